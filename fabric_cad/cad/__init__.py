@@ -1,0 +1,7 @@
+"""The door to CadQuery and OCCT; no other package imports them, the masters apart."""
+
+from .inspection import Consistency, inspect_cell
+from .solids import solid_of, sweep
+from .step import COLOURS, Cell, assemble, read_step
+
+__all__ = ["COLOURS", "Cell", "Consistency", "assemble", "inspect_cell", "read_step", "solid_of", "sweep"]

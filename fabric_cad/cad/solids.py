@@ -1,0 +1,79 @@
+"""Skins to solids: each patch becomes a B-spline face with the very same poles."""
+
+from __future__ import annotations
+
+import cadquery as cq
+import numpy as np
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
+from OCP.Geom import Geom_BSplineSurface
+from OCP.gp import gp_Pnt
+from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+
+from ..errors import BuildError
+from ..sections import Section
+from ..sweeps import Patch, Skin, Spline, Trajectory, skin
+
+_SEWING_TOLERANCE = 1e-7  # mm, OCCT's confusion; the edges sewn agree to rounding
+
+def sweep(path: Trajectory, sections: tuple[Section, ...]) -> cq.Solid:
+    """One valid solid: the control sections swept along a trajectory, exactly.
+
+    Raises :class:`BuildError` where OCCT does not close it to a valid solid.
+    """
+    return solid_of(skin(path, sections))
+
+
+def solid_of(surface: Skin) -> cq.Solid:
+    """The solid bounded by a skin and its two end sections."""
+    faces = [_face(patch, surface) for patch in surface.patches]
+    open_shell = _sew(faces)
+    along = "x" if surface.direction == "weft" else "y"
+    ends = [_cap(open_shell, along, place) for place in (surface.planes[0], surface.planes[-1])]
+    shell = _sew([*open_shell.Faces(), *ends])
+    solid = cq.Solid.makeSolid(shell) if isinstance(shell, cq.Shell) else None
+    if solid is None or not solid.isValid():
+        raise BuildError(f"the {surface.direction} at {surface.axis:g} mm does not close to a valid solid")
+    return solid
+
+
+def _face(patch: Patch, surface: Skin) -> cq.Face:
+    rows, columns = patch.z.shape
+    poles = TColgp_Array2OfPnt(1, rows, 1, columns)
+    along, across = patch.along.abscissae.tolist(), (patch.across.poles + surface.axis).tolist()
+    weft = surface.direction == "weft"
+    for i, heights in enumerate(patch.z.tolist()):
+        for j, z in enumerate(heights):
+            t, v = along[i], across[j]
+            poles.SetValue(i + 1, j + 1, gp_Pnt(t, v, z) if weft else gp_Pnt(v, t, z))
+    (u_knots, u_times), (v_knots, v_times) = _knots(patch.along), _knots(patch.across)
+    spline = Geom_BSplineSurface(poles, u_knots, v_knots, u_times, v_times, patch.along.degree, patch.across.degree)
+    return cq.Face(BRepBuilderAPI_MakeFace(spline, _SEWING_TOLERANCE).Face())
+
+
+def _knots(spline: Spline) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
+    distinct, times = np.unique(spline.knots, return_counts=True)
+    knots = TColStd_Array1OfReal(1, len(distinct))
+    multiplicities = TColStd_Array1OfInteger(1, len(distinct))
+    for i, (knot, count) in enumerate(zip(distinct.tolist(), times.tolist()), start=1):
+        knots.SetValue(i, knot)
+        multiplicities.SetValue(i, count)
+    return knots, multiplicities
+
+
+def _sew(faces: list[cq.Face]) -> cq.Shape:
+    sewing = BRepBuilderAPI_Sewing(_SEWING_TOLERANCE)
+    for face in faces:
+        sewing.Add(face.wrapped)
+    sewing.Perform()
+    return cq.Shape.cast(sewing.SewedShape())
+
+
+def _cap(shell: cq.Shape, along: str, place: float) -> cq.Face:
+    """The planar end section, from the edges the skin ends in."""
+    edges = [
+        edge
+        for edge in shell.Edges()
+        if all(abs(getattr(point, along) - place) < _SEWING_TOLERANCE for point in (edge.startPoint(), edge.endPoint()))
+    ]
+    return cq.Face.makeFromWires(cq.Wire.assembleEdges(edges))

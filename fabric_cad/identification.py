@@ -1,0 +1,386 @@
+"""From measured rows to the parameters of the model, whole tables at once.
+
+Of the two directions' crimps, yarn thicknesses and the fabric's thickness, two relations
+leave three free (one in a balanced fabric). Density and width known, the crimp of a yarn
+fixes its amplitude A through the length equation and the reverse, and
+
+    A1 + A2 = b1 + b2                          contact, from (13), (14) at both kinds of crossing
+    w = max(b1 + A1, b2 + A2)                  (15)
+
+The first quantities given, in the order of :data:`CLOSING`, identify a row; what a row holds
+beyond them is compared with the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import InputError, Problem
+from .lengths import excess_length, slope_from_crimp
+from .sections import free_side
+from .solved import PLATEAUX, SolvedTable, point_columns
+from .tables import Family
+from .weaves import DIRECTIONS
+
+CLOSING = ("weft_crimp", "warp_crimp", "weft_thickness_mm", "warp_thickness_mm", "fabric_thickness_mm")
+"""Quantities that close the identification, in the order in which they are preferred."""
+
+# thinner than this, as a share of the fabric, is rounding and not a difference
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class _Closed:
+    """A1, A2 (amplitudes) and b1, b2 (yarn thicknesses), each shape (rows,), mm."""
+
+    A1: np.ndarray
+    A2: np.ndarray
+    b1: np.ndarray
+    b2: np.ndarray
+
+    @property
+    def fabric(self) -> np.ndarray:
+        """Fabric thickness w. (15)"""
+        return np.maximum(self.b1 + self.A1, self.b2 + self.A2)
+
+    def where(self, mask: np.ndarray, other: _Closed) -> _Closed:
+        """This solution where ``mask``, the other elsewhere."""
+        return _Closed(
+            *(np.where(mask, getattr(self, name), getattr(other, name)) for name in ("A1", "A2", "b1", "b2"))
+        )
+
+
+# One rule for each three of {A1, A2, b1, b2, w}: all solutions of the two relations. Where the
+# fabric thickness leaves two, the first has the weft as the outer (thicker) system.
+_Rule = Callable[..., tuple[_Closed, ...]]
+
+
+def _two_amplitudes_and_fabric(A1, A2, w):
+    return _Closed(A1, A2, w - A1, 2 * A1 + A2 - w), _Closed(A1, A2, 2 * A2 + A1 - w, w - A2)
+
+
+def _two_thicknesses_and_fabric(b1, b2, w):
+    return _Closed(w - b1, 2 * b1 + b2 - w, b1, b2), _Closed(2 * b2 + b1 - w, w - b2, b1, b2)
+
+
+def _weft_alone_and_fabric(A1, b1, w):
+    return (_Closed(A1, (w - A1 + b1) / 2, b1, (w + A1 - b1) / 2),)
+
+
+def _warp_alone_and_fabric(A2, b2, w):
+    return (_Closed((w - A2 + b2) / 2, A2, (w + A2 - b2) / 2, b2),)
+
+
+def _weft_crimp_warp_thickness_and_fabric(A1, b2, w):
+    weft_outside = _Closed(A1, w + b2 - 2 * A1, w - A1, b2)
+    return (weft_outside.where(A1 >= b2, _Closed(A1, w - b2, A1 + w - 2 * b2, b2)),)
+
+
+def _warp_crimp_weft_thickness_and_fabric(A2, b1, w):
+    warp_outside = _Closed(w + b1 - 2 * A2, A2, b1, w - A2)
+    return (warp_outside.where(A2 >= b1, _Closed(w - b1, A2, b1, A2 + w - 2 * b1)),)
+
+
+_RULES: dict[tuple[int, ...], _Rule] = {
+    (0, 1, 2): lambda A1, A2, b1: (_Closed(A1, A2, b1, A1 + A2 - b1),),
+    (0, 1, 3): lambda A1, A2, b2: (_Closed(A1, A2, A1 + A2 - b2, b2),),
+    (0, 1, 4): _two_amplitudes_and_fabric,
+    (0, 2, 3): lambda A1, b1, b2: (_Closed(A1, b1 + b2 - A1, b1, b2),),
+    (1, 2, 3): lambda A2, b1, b2: (_Closed(b1 + b2 - A2, A2, b1, b2),),
+    (0, 2, 4): _weft_alone_and_fabric,
+    (1, 3, 4): _warp_alone_and_fabric,
+    (0, 3, 4): _weft_crimp_warp_thickness_and_fabric,
+    (1, 2, 4): _warp_crimp_weft_thickness_and_fabric,
+    (2, 3, 4): _two_thicknesses_and_fabric,
+    # balanced: A = b, w = 2 A
+    (0,): lambda A: (_Closed(A, A, A, A),),
+    (2,): lambda b: (_Closed(b, b, b, b),),
+    (4,): lambda w: (_Closed(w / 2, w / 2, w / 2, w / 2),),
+}
+
+
+_BOUNDED = ((0, 1, 4), (2, 3, 4), (0, 2, 4), (1, 3, 4))
+"""Sets in which the sum of the first two is the least fabric thickness there is."""
+
+_SYMBOLS = ("A1", "A2", "b1", "b2", "w")
+
+
+@dataclass(frozen=True)
+class _Measured:
+    """The measured arrays of a table with a balanced row's weft cells used for its warp."""
+
+    density: dict[str, np.ndarray]
+    width: dict[str, np.ndarray]
+    closing: np.ndarray  # (5, rows) in the order of CLOSING
+    balanced: np.ndarray
+    lateral: np.ndarray
+
+
+def _measured(table: Family) -> _Measured:
+    balanced = table.balanced
+    values = table.measured
+    density, width = (
+        {
+            "weft": values[f"weft_{quantity}"],
+            "warp": np.where(balanced, values[f"weft_{quantity}"], values[f"warp_{quantity}"]),
+        }
+        for quantity in ("density_per_mm", "width_mm")
+    )
+    closing = np.array([values[column] for column in CLOSING]).reshape(len(CLOSING), len(table))
+    return _Measured(density, width, closing, balanced, np.nan_to_num(values["lateral_height_mm"]))
+
+
+@dataclass(frozen=True)
+class _Transitions:
+    """Geometry of one direction's transitions; arrays of shape (rows,), mm. (A.1)-(A.12)"""
+
+    spacing: np.ndarray  # of the yarns it crosses
+    projected: np.ndarray  # yarn length in projection per transition
+    u_low: np.ndarray
+    u_high: np.ndarray
+    gap: np.ndarray
+
+    def slope(self, crimp: np.ndarray) -> np.ndarray:
+        return slope_from_crimp(crimp, self.projected, self.u_low + self.u_high, self.gap)
+
+    def crimp(self, slope: np.ndarray) -> np.ndarray:
+        return excess_length(slope, self.u_low + self.u_high, self.gap) / self.projected
+
+    @property
+    def rise(self) -> np.ndarray:
+        """Amplitude per unit of slope, A = s rise. (A.27)-(A.29)"""
+        return self.u_low / 2 + self.gap + self.u_high / 2
+
+
+def _transitions(table: Family, measured: _Measured) -> dict[str, _Transitions]:
+    repeats = np.array([weave.repeat for weave in table.weaves], dtype=float)
+    found = {}
+    for direction, crossed in (("weft", "warp"), ("warp", "weft")):
+        spacing, width = 1 / measured.density[crossed], measured.width[crossed]
+        found[direction] = _Transitions(spacing, repeats / 2 * spacing, width / 2, width / 2, spacing - width)
+    return found
+
+
+def identify(table: Family) -> SolvedTable:
+    """Solve every row of a table for the model's parameters.
+
+    Standard model of the paper (sections 3 to 5, appendix A): balanced rows from three
+    parameters, unbalanced ones from seven, or from any other sufficient subset.
+    Raises :class:`InputError` listing, for every row that is not a fabric, the number that
+    makes it so; nothing unconverged is returned.
+    """
+    measured = _measured(table)
+    transitions = _transitions(table, measured)
+    used = [_used(measured, at) for at in range(len(table))]
+    problems = [_insufficient(table, measured, at) for at, columns in enumerate(used) if not columns]
+    first, second, least = _close(measured, transitions, used)
+    refusals = [_refusals(table, measured, transitions, closed, least, used) for closed in (first, second)]
+    second_chosen, two = _choose(table, first, second, *refusals)
+    problems += [
+        refusals[int(second_chosen[at])][at] for at in range(len(table)) if at in refusals[int(second_chosen[at])]
+    ]
+    if problems:
+        raise InputError(sorted(problems, key=lambda problem: problem.line))
+    closed, other = second.where(second_chosen, first), first.where(second_chosen, second)
+    return _solved(table, measured, transitions, used, closed, other, two)
+
+
+def _used(measured: _Measured, at: int) -> tuple[int, ...]:
+    """Which of CLOSING identify a row; empty where they do not suffice."""
+    given = ~np.isnan(measured.closing[:, at])
+    if measured.balanced[at]:
+        return next(((k,) for k in (0, 2, 4) if given[k]), ())
+    used = tuple(np.flatnonzero(given)[:3].tolist())
+    return used if len(used) == 3 else ()
+
+
+def _insufficient(table: Family, measured: _Measured, at: int) -> Problem:
+    if measured.balanced[at]:
+        return table.problem(
+            at,
+            CLOSING[0],
+            "this cell is empty, and so are weft_thickness_mm and fabric_thickness_mm; "
+            "a balanced fabric needs one of the three",
+        )
+    given = [column for column, value in zip(CLOSING, measured.closing[:, at]) if not np.isnan(value)]
+    missing = [column for column in CLOSING if column not in given]
+    return table.problem(
+        at,
+        missing[0],
+        f"this cell is empty; an unbalanced fabric needs three of {', '.join(CLOSING)}, "
+        f"and {' and '.join(given) or 'none'} is given: fill {3 - len(given)} more of {', '.join(missing)}",
+    )
+
+
+def _close(measured, transitions, used) -> tuple[_Closed, _Closed, np.ndarray]:
+    """Both solutions of the two relations for every row (the same twice where one exists).
+
+    Third, the least fabric thickness the other two numbers allow where (15) bounds it, mm.
+    """
+    rows = len(used)
+    amplitudes = [transitions[d].rise * transitions[d].slope(measured.closing[k]) for k, d in enumerate(DIRECTIONS)]
+    values = np.concatenate([np.reshape(amplitudes, (2, rows)), measured.closing[2:]])
+    solutions = [_Closed(*np.full((4, rows), np.nan)) for _ in range(2)]
+    least = np.full(rows, np.nan)
+    groups: dict[tuple[int, ...], list[int]] = {}
+    for at, columns in enumerate(used):
+        groups.setdefault(columns, []).append(at)
+    groups.pop((), None)
+    for columns, group in groups.items():
+        given = values[np.ix_(columns, group)]
+        found = _RULES[columns](*given)
+        for solution, closed in zip(solutions, (found[0], found[-1])):
+            for name in ("A1", "A2", "b1", "b2"):
+                getattr(solution, name)[group] = getattr(closed, name)
+        if columns in _BOUNDED:
+            least[group] = given[0] + given[1]
+    return *solutions, least
+
+
+def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Problem]:
+    """What makes a row no fabric under one solution, by row number."""
+    found: dict[int, Problem] = {}
+
+    def refuse(mask, column, message) -> None:
+        for at in np.flatnonzero(mask).tolist():
+            if used[at]:
+                names = [CLOSING[k] for k in used[at]]
+                found.setdefault(at, table.problem(at, column(names, at), message(at)))
+
+    def last(names, at):
+        return names[-1]
+
+    with np.errstate(invalid="ignore"):
+        refuse(
+            np.isnan(closed.A1 + closed.A2 + closed.b1 + closed.b2),
+            lambda names, at: names[0],
+            lambda at: "no yarn of the model has this crimp",
+        )
+        fabric = measured.closing[4]
+        refuse(
+            fabric < least * (1 - _ROUNDING),
+            last,
+            lambda at: f"{fabric[at]:g} is below {' + '.join(_SYMBOLS[k] for k in used[at][:2])} = {least[at]:.4g} mm",
+        )
+        rise = _rises(measured, transitions, closed)
+        for direction, A, b, other in (("weft", closed.A1, closed.b1, "warp"), ("warp", closed.A2, closed.b2, "weft")):
+            refuse(~(A > 0), last, lambda at: f"leaves the {direction} an amplitude A of {A[at]:.4g} mm, not above 0")
+            refuse(~(b > 0), last, lambda at: f"leaves the {direction} a thickness of {b[at]:.4g} mm, not above 0")
+            room, edge = b - measured.lateral, rise[direction]
+            refuse(
+                ~(edge < b),
+                lambda names, at: f"{other}_crimp" if f"{other}_crimp" in names else names[-1],
+                lambda at: f"the contact rise at the {direction}'s edges, {edge[at]:.4g} mm, "
+                f"is not below the {direction} thickness {b[at]:.4g} mm",
+            )
+            refuse(
+                ~(edge < room),
+                lambda names, at: "lateral_height_mm",
+                lambda at: f"{measured.lateral[at]:g} is not below the {room[at] + measured.lateral[at] - edge[at]:.4g} mm "
+                f"that the contact rise leaves at the {direction}'s edges",
+            )
+    return found
+
+
+def _rises(measured, transitions, closed) -> dict[str, np.ndarray]:
+    """Rise of each direction's contact profile at its edge where the crossed yarn turns, mm."""
+    slope = {d: A / transitions[d].rise for d, A in zip(DIRECTIONS, (closed.A1, closed.A2))}
+    return {d: slope[crossed] * measured.width[d] / 4 for d, crossed in (("weft", "warp"), ("warp", "weft"))}
+
+
+def _choose(table, first, second, wrong_first, wrong_second) -> tuple[np.ndarray, np.ndarray]:
+    """(second solution chosen, two solutions exist), each boolean (rows,).
+
+    Where the fabric thickness leaves two solutions the row's ``thicker`` cell decides;
+    without it the more nearly equal yarn thicknesses, on a tie the weft as the thicker.
+    """
+    rows = range(len(table))
+    with np.errstate(invalid="ignore"):
+        differ = np.abs(first.b1 - second.b1) + np.abs(first.A1 - second.A1) > _ROUNDING * first.fabric
+        more_even = np.abs(second.b1 - second.b2) < np.abs(first.b1 - first.b2) * (1 - _ROUNDING)
+    possible_first = np.array([at not in wrong_first for at in rows], dtype=bool)
+    possible_second = np.array([at not in wrong_second for at in rows], dtype=bool)
+    asked_weft, asked_warp = (np.array([each == d for each in table.thicker], dtype=bool) for d in DIRECTIONS)
+    by_default = np.where(possible_first & possible_second, more_even, possible_second)
+    return differ & (asked_warp | (by_default & ~asked_weft)), differ & possible_first & possible_second
+
+
+def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTable:
+    amplitude = {"weft": closed.A1, "warp": closed.A2}
+    thickness = {"weft": closed.b1, "warp": closed.b2}
+    slope = {d: amplitude[d] / transitions[d].rise for d in DIRECTIONS}
+    rise = _rises(measured, transitions, closed)
+    under, over = (np.array([getattr(weave, side) for weave in table.weaves], dtype=float) for side in ("under", "over"))
+    columns: dict[str, object] = {
+        "name": list(table.names),
+        "family": [table.family] * len(table),
+        "over": [weave.over for weave in table.weaves],
+        "under": [weave.under for weave in table.weaves],
+        "step": [weave.step for weave in table.weaves],
+        "section": list(table.sections),
+        "lateral_height_mm": measured.lateral,
+        "parameters": np.where(measured.balanced, 3, 7),
+        "identified_by": [" ".join(CLOSING[k] for k in columns) for columns in used],
+        "fabric_thickness_mm": closed.fabric,
+    }
+    # the weft starts in the middle of its low float of `under` warps, the warp in that of its
+    # high one, of as many wefts (A.1)-(A.12); frame R of Fig. 15
+    heights = {"weft": (0.0 * closed.A1, closed.A1), "warp": ((closed.A1 + closed.A2) / 2, (closed.A1 - closed.A2) / 2)}
+    for d in DIRECTIONS:
+        t = transitions[d]
+        u_start, u_end = (t.u_low, t.u_high) if d == "weft" else (t.u_high, t.u_low)
+        z_start, z_end = heights[d]
+        sign = 1.0 if d == "weft" else -1.0
+        p_start, p_end = sign * slope[d] / (2 * u_start), sign * slope[d] / (2 * u_end)
+        leaves, reaches = (under - 1) / 2 * t.spacing, (under + 1) / 2 * t.spacing
+        along = (0.0 * leaves, leaves, leaves + u_start, reaches - u_end, reaches, (over + under) / 2 * t.spacing)
+        height = (z_start, z_start, z_start + p_start * u_start**2, z_end - p_end * u_end**2, z_end, z_end)
+        columns |= {
+            f"{d}_crossed_spacing_mm": t.spacing,
+            f"{d}_width_mm": measured.width[d],
+            f"{d}_thickness_mm": thickness[d],
+            f"{d}_crimp": np.where(_is_used(used, CLOSING.index(f"{d}_crimp"), measured), _crimp(measured, d), t.crimp(slope[d])),
+            f"{d}_slope": slope[d],
+            f"{d}_amplitude_mm": amplitude[d],
+        }
+        number = "1" if d == "weft" else "2"
+        columns |= {f"p{number}1": p_start, f"p{number}2": p_end}
+        for (_, along_column, height_column), x, z in zip(point_columns(d), along, height):
+            columns |= {along_column: x, height_column: z}
+        for plateau in PLATEAUX:
+            for kind, left, right in (("float", 0, 0), ("edge", 0, 1), ("turn", 1, 1)):
+                q, v0 = free_side(
+                    thickness[d], measured.width[d], left * rise[d], right * rise[d], measured.lateral
+                )
+                columns |= {f"{d}_{plateau}_{kind}_q": q, f"{d}_{plateau}_{kind}_v0_mm": v0}
+    for d, b in (("weft", other.b1), ("warp", other.b2)):
+        columns[f"other_{d}_thickness_mm"] = ["" if not twice else value for twice, value in zip(two, b.tolist())]
+    lists = {name: values.tolist() if isinstance(values, np.ndarray) else values for name, values in columns.items()}
+    return SolvedTable(lists, _comparisons(measured, used, lists))
+
+
+def _crimp(measured: _Measured, direction: str) -> np.ndarray:
+    """Measured crimp of a direction, a balanced row's weft crimp for its warp."""
+    weft, warp = measured.closing[:2]
+    return weft if direction == "weft" else np.where(measured.balanced, weft, warp)
+
+
+def _is_used(used, column: int, measured: _Measured) -> np.ndarray:
+    """Boolean (rows,): the quantity of that number in CLOSING identified the row."""
+    return np.array(
+        [column in columns or (balanced and columns == (0,) and column == 1) for columns, balanced in zip(used, measured.balanced)],
+        dtype=bool,
+    )
+
+
+def _comparisons(measured, used, columns) -> tuple[tuple[tuple[str, float, float], ...], ...]:
+    beyond = ~np.isnan(measured.closing)
+    for at, identified in enumerate(used):
+        beyond[list(identified), at] = False
+    return tuple(
+        tuple((CLOSING[k], float(measured.closing[k, at]), columns[CLOSING[k]][at]) for k in np.flatnonzero(beyond[:, at]))
+        for at in range(len(used))
+    )

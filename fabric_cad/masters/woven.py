@@ -1,0 +1,24 @@
+"""What the three masters share: control planes, control sections, trajectory, sweep.
+
+Every yarn of the elementary cell is cut by control planes: mid-gap, begin and end of each
+crossing (paper, Fig. 12). In each plane stands a control section (Fig. 9, 13), and the
+sections are swept along the trajectory (Fig. 11). Which yarn lies on top at each crossing
+is all that a master adds.
+"""
+
+from __future__ import annotations
+
+from fabric_cad.cad import Cell, assemble, sweep
+from fabric_cad.solved import SolvedFabric
+from fabric_cad.sweeps import control_sections, trajectory
+from fabric_cad.weaves import yarns_of
+
+
+def woven(fabric: SolvedFabric, weft_over_warp) -> Cell:
+    """The cell of a fabric; ``weft_over_warp[i][j]`` is True where weft i passes over warp j."""
+    yarns = {}
+    for yarn in yarns_of(weft_over_warp):
+        path = trajectory(fabric, yarn)  # M11 ... M16 or M21 ... M26, over the whole cell
+        sections = control_sections(fabric, yarn)  # one in each control plane of the path
+        yarns[yarn.name] = sweep(path, sections)
+    return assemble(yarns)

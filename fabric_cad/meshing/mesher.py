@@ -1,0 +1,300 @@
+"""The door to gmsh: STEP to hexahedra, and a mesh file back to arrays.
+
+gmsh reads the STEP, puts equally spaced nodes on every edge and meshes the yarns' faces
+transfinitely. A :mod:`template <fabric_cad.meshing.templates>` then fills each layer of
+nodes between the faces, and two layers in a row bound the hexahedra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import BuildError
+from ..solved import SolvedFabric
+from ..sweeps import control_planes
+from ..weaves import Yarn, yarns_of
+from .mesh import Mesh
+from .options import MeshOptions
+from .templates import Template, flat_template, lenticular_template
+
+_HEXAHEDRON, _QUADRILATERAL = 5, 3  # gmsh's element types
+_PLACE = 1e-6  # mm, by which a face's nodes are told apart
+
+
+@contextmanager
+def _session() -> Iterator:
+    """gmsh, initialised for as long as the block runs."""
+    try:
+        import gmsh
+    except OSError as error:
+        raise BuildError(
+            f"gmsh cannot be loaded: {error}; it needs the system's OpenGL and X11 libraries (see the README)"
+        ) from error
+    gmsh.initialize(["-nopopup"], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.AbortOnError", 2)
+        yield gmsh
+    finally:
+        gmsh.finalize()
+
+
+def mesh_cell(step: str | Path, fabric: SolvedFabric, options: MeshOptions, msh: str | Path) -> None:
+    """Mesh the STEP of a fabric's cell with hexahedra and write it as gmsh 4.1.
+
+    Raises :class:`InputError` where the options do not fit the section, :class:`BuildError`
+    where gmsh or the STEP does not give what the fabric asks for.
+    """
+    options.check(fabric)
+    with _session() as gmsh:
+        try:
+            _mesh(gmsh, Path(step), fabric, options, Path(msh))
+        except BuildError:
+            raise
+        except Exception as error:  # gmsh raises bare Exception
+            raise BuildError(f"gmsh: {error}") from error
+
+
+def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Path) -> None:
+    gmsh.option.setNumber("Geometry.OCCBoundsUseStl", 0)
+    gmsh.merge(str(step))
+    solids = {gmsh.model.getEntityName(3, tag).split("/")[-1]: tag for _, tag in gmsh.model.getEntities(3)}
+    plans = [_plan(fabric, yarn, options) for yarn in yarns_of(fabric.weave.interlacement())]
+    if missing := [plan.yarn.name for plan in plans if plan.yarn.name not in solids]:
+        raise BuildError(f"{step}: holds no solid named {', '.join(missing)}")
+    faces = {
+        plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name], fabric) for plan in plans
+    }
+    for plan in plans:
+        _set_transfinite(gmsh, plan, solids[plan.yarn.name], faces[plan.yarn.name])
+    gmsh.option.setNumber("Mesh.MeshOnlyVisible", 1)
+    gmsh.model.setVisibility([(2, each[side]) for each in faces.values() for side in ("start", "end")], 0)
+    gmsh.model.mesh.generate(1)
+    _space_equally(gmsh)
+    gmsh.model.mesh.generate(2)
+    for plan in plans:
+        _fill(gmsh, plan, solids[plan.yarn.name], faces[plan.yarn.name])
+    for plan in plans:
+        _name(gmsh, plan, solids[plan.yarn.name], faces[plan.yarn.name])
+    gmsh.model.mesh.renumberNodes()
+    gmsh.model.mesh.renumberElements()
+    gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+    gmsh.option.setNumber("Mesh.Binary", 1)
+    gmsh.write(str(msh))
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """What a yarn's mesh will be before there is any."""
+
+    yarn: Yarn
+    planes: np.ndarray
+    counts: tuple[int, ...]  # elements along, between every two control planes
+    across: int
+    through: int
+    template: Template
+    centre: float  # v of the axis, as a coordinate
+    width: float
+
+    @property
+    def along_axis(self) -> int:
+        return 0 if self.yarn.direction == "weft" else 1
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Number of the layer of nodes in which each control plane lies."""
+        return np.concatenate([[0], np.cumsum(self.counts)])
+
+
+def _plan(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> _Plan:
+    across, crossing = options.across, options.crossing
+    if yarn.direction == "warp":
+        across, crossing = crossing, across
+    make = lenticular_template if fabric.section == "lenticular" else flat_template
+    return _Plan(
+        yarn=yarn,
+        planes=np.array(control_planes(fabric, yarn.direction)),
+        counts=(options.gap // 2, crossing, options.gap // 2) * len(yarn.high),
+        across=across,
+        through=options.through,
+        template=make(across, options.through),
+        centre=(yarn.index + 0.5) * fabric.crossed(yarn.direction).crossed_spacing,
+        width=fabric.directions[yarn.direction].width,
+    )
+
+
+def _classify(gmsh, plan: _Plan, solid: int, fabric: SolvedFabric) -> dict:
+    """Faces of a yarn by place: ``start``, ``end`` and (segment, side)."""
+    faces: dict = {}
+    upright: dict[int, list[tuple[float, int]]] = {}
+    for _, face in gmsh.model.getBoundary([(3, solid)], oriented=False):
+        low, high = gmsh.model.getParametrizationBounds(2, face)
+        corners = [u for v in (low[1], high[1]) for x in (low[0], high[0]) for u in (x, v)]
+        points = gmsh.model.getValue(2, face, corners).reshape(-1, 3)
+        along = points[:, plan.along_axis]
+        across = points[:, 1 - plan.along_axis] - plan.centre
+        if np.ptp(along) < _PLACE:
+            faces["start" if along.mean() < plan.planes.mean() else "end"] = face
+            continue
+        segment = int(np.searchsorted(plan.planes, along.mean())) - 1
+        if np.ptp(across) < _PLACE:
+            faces[segment, "left" if across.mean() < 0 else "right"] = face
+        else:
+            middle = gmsh.model.getValue(2, face, (low + high) / 2)
+            upright.setdefault(segment, []).append((middle[2], face))
+    for segment, both in upright.items():
+        (_, faces[segment, "bottom"]), (_, faces[segment, "top"]) = sorted(both)
+    sides = 2 if fabric.section == "lenticular" else 4
+    if len(faces) != sides * len(plan.counts) + 2:
+        raise BuildError(f"{plan.yarn.name} has {len(faces)} faces, not {sides * len(plan.counts) + 2}")
+    return faces
+
+
+def _set_transfinite(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
+    for key, face in faces.items():
+        if key in ("start", "end"):
+            continue
+        segment, side = key
+        for _, curve in gmsh.model.getBoundary([(2, face)], oriented=False):
+            ends = [
+                gmsh.model.getValue(0, point, [])[plan.along_axis]
+                for _, point in gmsh.model.getBoundary([(1, curve)], oriented=False)
+            ]
+            if abs(ends[0] - ends[1]) > _PLACE:
+                parts = plan.counts[segment]
+            else:
+                parts = plan.across if side in ("top", "bottom") else plan.through
+            gmsh.model.mesh.setTransfiniteCurve(curve, parts + 1)
+        gmsh.model.mesh.setTransfiniteSurface(face)
+        gmsh.model.mesh.setRecombine(2, face)
+
+
+def _space_equally(gmsh) -> None:
+    """Space the nodes of every curve equally in its parameter, which runs with x, y or z.
+
+    Layers of nodes are then vertical planes, whatever the slope of the two edges.
+    """
+    for _, curve in gmsh.model.getEntities(1):
+        tags, _, at = gmsh.model.mesh.getNodes(1, curve, returnParametricCoord=True)
+        if not len(tags):
+            continue
+        low, high = gmsh.model.getParametrizationBounds(1, curve)
+        even = np.linspace(low[0], high[0], len(tags) + 2)[1:-1]
+        places = gmsh.model.getValue(1, curve, even).reshape(-1, 3)
+        for tag, place, parameter in zip(tags[np.argsort(at)], places, even):
+            gmsh.model.mesh.setNode(tag, place, [parameter])
+
+
+def _fill(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
+    """Add the inner nodes, the hexahedra, and the quadrilaterals of both end sections."""
+    tags, places = _outline(gmsh, plan, faces)
+    template, layers = plan.template, len(tags)
+    inner = np.einsum("io,roc->ric", template.weights, places)
+    first = int(gmsh.model.mesh.getMaxNodeTag()) + 1
+    inner_tags = np.arange(first, first + inner.shape[0] * inner.shape[1]).reshape(inner.shape[:2])
+    quads = template.quads if plan.yarn.direction == "weft" else template.quads[:, ::-1]
+    layer_tags = np.hstack([tags, inner_tags])
+    for entity, rows in (((3, solid), slice(1, -1)), ((2, faces["start"]), [0]), ((2, faces["end"]), [-1])):
+        gmsh.model.mesh.addNodes(*entity, inner_tags[rows].ravel(), inner[rows].ravel())
+    gmsh.model.mesh.addElementsByType(faces["start"], _QUADRILATERAL, [], layer_tags[0][quads[:, ::-1]].ravel())
+    gmsh.model.mesh.addElementsByType(faces["end"], _QUADRILATERAL, [], layer_tags[-1][quads].ravel())
+    hexahedra = np.concatenate([layer_tags[:-1][:, quads], layer_tags[1:][:, quads]], axis=2)
+    gmsh.model.mesh.addElementsByType(solid, _HEXAHEDRON, [], hexahedra.ravel())
+
+
+def _outline(gmsh, plan: _Plan, faces: dict) -> tuple[np.ndarray, np.ndarray]:
+    """Tags (layers, outline) and places (layers, outline, 3) of the nodes around every layer."""
+    layers, outline = plan.rows[-1] + 1, plan.template.outline
+    tags = np.zeros((layers, outline), dtype=np.uint64)
+    places = np.full((layers, outline, 3), np.nan)
+    slots = _slots(plan)
+    for segment, parts in enumerate(plan.counts):
+        start, end = plan.planes[segment : segment + 2]
+        for side, slot in slots.items():
+            face_tags, coordinates, _ = gmsh.model.mesh.getNodes(2, faces[segment, side], includeBoundary=True)
+            coordinates = coordinates.reshape(-1, 3)
+            row = np.rint((coordinates[:, plan.along_axis] - start) / (end - start) * parts).astype(int)
+            across = coordinates[:, 2 if side in ("left", "right") else 1 - plan.along_axis]
+            order = np.lexsort((across, row))
+            if len(order) != (parts + 1) * len(slot):
+                raise BuildError(f"gmsh did not mesh a face of {plan.yarn.name} transfinitely")
+            rows = plan.rows[segment] + np.arange(parts + 1)
+            tags[np.ix_(rows, slot)] = face_tags[order].reshape(parts + 1, len(slot))
+            places[np.ix_(rows, slot)] = coordinates[order].reshape(parts + 1, len(slot), 3)
+    return tags, places
+
+
+def _slots(plan: _Plan) -> dict[str, np.ndarray]:
+    """Places in a section's outline of each side's nodes, from left to right or upwards."""
+    across, outline = plan.across, plan.template.outline
+    bottom = np.arange(across + 1)
+    if outline == 2 * across:  # pointed edges
+        return {"bottom": bottom, "top": np.arange(outline, across - 1, -1) % outline}
+    through = plan.through
+    return {
+        "bottom": bottom,
+        "right": across + np.arange(through + 1),
+        "top": (across + through + np.arange(across + 1))[::-1],
+        "left": np.arange(outline, outline - through - 1, -1) % outline,
+    }
+
+
+def _name(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
+    name = plan.yarn.name
+    gmsh.model.addPhysicalGroup(3, [solid], name=name)
+    contact = [
+        faces[3 * k + 1, "bottom" if high else "top"] for k, high in enumerate(plan.yarn.high)
+    ]
+    ends = {faces["start"], faces["end"]}
+    free = [face for face in faces.values() if face not in ends and face not in set(contact)]
+    for kind, tags in (
+        ("contact", contact),
+        ("free", free),
+        ("start", [faces["start"]]),
+        ("end", [faces["end"]]),
+    ):
+        gmsh.model.addPhysicalGroup(2, tags, name=f"{name}_{kind}")
+
+
+def read_mesh(msh: str | Path) -> Mesh:
+    """Read a mesh written by :func:`mesh_cell`. Raises :class:`BuildError` where it cannot be."""
+    with _session() as gmsh:
+        try:
+            gmsh.open(str(msh))
+            return _read(gmsh)
+        except Exception as error:  # gmsh raises bare Exception
+            raise BuildError(f"{msh}: gmsh: {error}") from error
+
+
+def _read(gmsh) -> Mesh:
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    points = np.empty((len(tags), 3))
+    index = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    order = np.argsort(tags)
+    index[tags[order]] = np.arange(len(tags))
+    points[:] = coordinates.reshape(-1, 3)[order]
+    yarns, hexahedra, others = [], [], 0
+    surfaces = {}
+    for dimension, group in gmsh.model.getPhysicalGroups():
+        name = gmsh.model.getPhysicalName(dimension, group)
+        found = []
+        wanted, corners = (_HEXAHEDRON, 8) if dimension == 3 else (_QUADRILATERAL, 4)
+        for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
+            for kind, elements, nodes in zip(*gmsh.model.mesh.getElements(dimension, entity)):
+                if kind == wanted:
+                    found.append(index[nodes].reshape(-1, corners))
+                elif dimension == 3:
+                    others += len(elements)
+        block = np.vstack(found) if found else np.empty((0, corners), dtype=np.int64)
+        if dimension == 3:
+            yarns.append(name)
+            hexahedra.append(block)
+        else:
+            surfaces[name] = block
+    yarn = np.repeat(np.arange(len(yarns)), [len(block) for block in hexahedra])
+    return Mesh(points, np.vstack(hexahedra), yarn, tuple(yarns), surfaces, others)

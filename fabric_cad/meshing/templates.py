@@ -1,0 +1,125 @@
+"""Quadrilaterals over a control section, as weights on the nodes of its outline.
+
+A template fills any section with the same number of outline nodes: an inner node is a fixed
+linear combination of outline nodes, so a whole yarn is filled by one matrix product. Outline
+nodes never move, which is what keeps the contact nodes of two yarns together.
+
+Lenticular sections end in a point. With 2k layers through the thickness, the last 2k columns
+before the tip T become three patches of k x k quadrilaterals (drawn for k = 1)::
+
+                    top k        top 2k
+                 _.---*------------*---   ---*---
+             _.-'      \\           |         |
+          T *           * G -------* M       *
+             '-._      /           |         |
+                 '-.--*------------*---   ---*---
+                   bottom k      bottom 2k
+
+M is at mid-height in column 2k, G = (T + top 2k + bottom 2k) / 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Template:
+    """A section's quadrilaterals.
+
+    Nodes are numbered outline first (``outline`` of them, counter-clockwise from the lower
+    left corner or left tip, seen against the direction of travel), then the inner ones, of
+    which ``weights``, shape (inner, outline), gives the places. ``quads``, shape (quads, 4),
+    are counter-clockwise.
+    """
+
+    outline: int
+    weights: np.ndarray
+    quads: np.ndarray
+
+
+def flat_template(across: int, through: int) -> Template:
+    """``across`` x ``through`` quadrilaterals between a section's four corners."""
+    outline = 2 * (across + through)
+    node = np.eye(outline)
+    bottom = node[: across + 1]
+    right = node[across : across + through + 1]
+    top = node[across + through : 2 * across + through + 1][::-1]
+    left = np.vstack([node[2 * across + through :], node[:1]])[::-1]
+    return _template(outline, [_coons(bottom, top, left, right)])
+
+
+def lenticular_template(across: int, through: int) -> Template:
+    """Quadrilaterals of a section with two pointed edges; ``through`` = 2k is even.
+
+    Raises ValueError unless ``across`` is at least twice ``through``.
+    """
+    if through % 2 or across < 2 * through:
+        raise ValueError(f"{across} columns do not hold two pointed edges of {through} layers")
+    k = through // 2
+    outline = 2 * across
+    node = np.eye(outline)
+    bottom = node[: across + 1]
+    top = np.vstack([node[across:], node[:1]])[::-1]
+    core = _coons(
+        bottom[through : across - through + 1],
+        top[through : across - through + 1],
+        _straight(bottom[through], top[through], through),
+        _straight(bottom[-through - 1], top[-through - 1], through),
+    )
+    left = _tip(bottom[: through + 1], top[: through + 1], k)
+    right = _tip(bottom[::-1][: through + 1], top[::-1][: through + 1], k)
+    return _template(outline, [core, *left, *(patch[::-1] for patch in right)])
+
+
+def _tip(bottom: np.ndarray, top: np.ndarray, k: int) -> list[np.ndarray]:
+    """The three patches of a left tip; row 0 of ``bottom`` and of ``top`` is the tip itself."""
+    middle = (bottom[2 * k] + top[2 * k]) / 2
+    centre = (bottom[0] + bottom[2 * k] + top[2 * k]) / 3
+    to_top, to_bottom, to_middle = (_straight(centre, end, k) for end in (top[k], bottom[k], middle))
+    point = _coons(bottom[: k + 1], to_top[::-1], top[: k + 1], to_bottom[::-1])
+    upper = _coons(to_middle, top[k:], to_top, _straight(middle, top[2 * k], k))
+    lower = _coons(bottom[k:], to_middle, to_bottom[::-1], _straight(bottom[2 * k], middle, k))
+    return [point, upper, lower]
+
+
+def _straight(start: np.ndarray, end: np.ndarray, parts: int) -> np.ndarray:
+    share = np.linspace(0.0, 1.0, parts + 1)[:, None]
+    return (1 - share) * start + share * end
+
+
+def _coons(bottom: np.ndarray, top: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Transfinite patch between four sides, shape (columns + 1, rows + 1, outline)."""
+    s = np.linspace(0.0, 1.0, len(bottom))[:, None, None]
+    t = np.linspace(0.0, 1.0, len(left))[None, :, None]
+    sides = (1 - t) * bottom[:, None] + t * top[:, None] + (1 - s) * left[None] + s * right[None]
+    corners = (1 - s) * ((1 - t) * bottom[0] + t * top[0]) + s * ((1 - t) * bottom[-1] + t * top[-1])
+    patch = sides - corners
+    patch[:, 0], patch[:, -1], patch[0], patch[-1] = bottom, top, left, right
+    return patch
+
+
+def _template(outline: int, patches: list[np.ndarray]) -> Template:
+    """Number the nodes of all patches once and read off the quadrilaterals."""
+    numbers: dict[bytes, int] = {}
+    weights = list(np.eye(outline))
+    for at, row in enumerate(weights):
+        numbers[_key(row)] = at
+    quads = []
+    for patch in patches:
+        ids = np.empty(patch.shape[:2], dtype=int)
+        for place in np.ndindex(ids.shape):
+            key = _key(patch[place])
+            if key not in numbers:
+                numbers[key] = len(weights)
+                weights.append(patch[place])
+            ids[place] = numbers[key]
+        corners = (ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:])
+        quads.append(np.stack([each.ravel() for each in corners], axis=1))
+    return Template(outline, np.array(weights[outline:]).reshape(-1, outline), np.vstack(quads))
+
+
+def _key(weights: np.ndarray) -> bytes:
+    return (np.round(weights, 9) + 0.0).tobytes()

@@ -1,0 +1,198 @@
+"""The solved family table: every control point and conic parameter that drives a master.
+
+Columns, for weft and warp alike (``weft_...``, ``warp_...``), mm and 1/mm:
+
+``crossed_spacing_mm``      a, spacing of the yarns it crosses
+``width_mm, thickness_mm``  c, b of its own section's envelope rectangle
+``crimp, slope, amplitude_mm``   e, s, A
+``M11_x_mm ... M16_z_mm``   control points of the weft, ``M21_y_mm ... M26_z_mm`` of the warp
+``p11, p12, p21, p22``      parabolas of (1), (2) at the first and second plateau, signed
+``<plateau>_<kind>_q``, ``_v0_mm``  free side of the contact section at the ``low`` or ``high``
+                            plateau, kind ``float``, ``edge`` (turn on the right), ``turn``
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from .errors import InputError, Problem
+from .sections import KINDS
+from .weaves import DIRECTIONS, Weave
+
+PLATEAUX = ("low", "high")
+
+
+def point_columns(direction: str) -> list[tuple[str, str, str]]:
+    """(point, along column, height column) of a direction's six control points."""
+    number, axis = (1, "x") if direction == "weft" else (2, "y")
+    return [(f"M{number}{k}", f"M{number}{k}_{axis}_mm", f"M{number}{k}_z_mm") for k in range(1, 7)]
+
+
+@dataclass(frozen=True)
+class FreeSide:
+    """Free parabola of a contact section: curvature q (1/mm) and vertex v0 (mm)."""
+
+    q: float
+    v0: float
+
+
+@dataclass(frozen=True)
+class Direction:
+    """Solved parameters of the wefts or the warps; lengths mm, parabolas 1/mm.
+
+    ``points`` are the six control points (along, z) of Fig. 16 in the paper's frame:
+    M11 ... M16 start in the middle of the weft's low float, M21 ... M26 in that of the
+    warp's high one. ``p_low``, ``p_high`` are positive. ``free_sides`` maps (plateau, kind).
+    """
+
+    crossed_spacing: float
+    width: float
+    thickness: float
+    crimp: float
+    slope: float
+    amplitude: float
+    p_low: float
+    p_high: float
+    points: tuple[tuple[float, float], ...]
+    free_sides: Mapping[tuple[str, str], FreeSide]
+
+    @property
+    def z_low(self) -> float:
+        """Height of the midline on the low plateau."""
+        return min(self.points[0][1], self.points[-1][1])
+
+    @property
+    def z_high(self) -> float:
+        """Height of the midline on the high plateau."""
+        return max(self.points[0][1], self.points[-1][1])
+
+
+@dataclass(frozen=True)
+class SolvedFabric:
+    """One row of a solved table."""
+
+    name: str
+    family: str
+    weave: Weave
+    section: str
+    lateral_height: float
+    fabric_thickness: float
+    weft: Direction
+    warp: Direction
+
+    @property
+    def directions(self) -> dict[str, Direction]:
+        return {"weft": self.weft, "warp": self.warp}
+
+    def crossed(self, direction: str) -> Direction:
+        """The other direction: that of the yarns which ``direction`` crosses."""
+        return self.warp if direction == "weft" else self.weft
+
+    @property
+    def period(self) -> tuple[float, float]:
+        """Extents of the elementary cell along x and y, mm."""
+        repeat = self.weave.repeat
+        return repeat * self.weft.crossed_spacing, repeat * self.warp.crossed_spacing
+
+    @classmethod
+    def from_row(cls, row: Mapping[str, object]) -> SolvedFabric:
+        """A fabric from one row of a solved table, cells as text or numbers. Raises KeyError, ValueError."""
+
+        def direction(name: str) -> Direction:
+            number = {key: float(row[f"{name}_{key}"]) for key in _SCALARS}
+            first, second = ("p11", "p12") if name == "weft" else ("p22", "p21")
+            return Direction(
+                crossed_spacing=number["crossed_spacing_mm"],
+                width=number["width_mm"],
+                thickness=number["thickness_mm"],
+                crimp=number["crimp"],
+                slope=number["slope"],
+                amplitude=number["amplitude_mm"],
+                p_low=abs(float(row[first])),
+                p_high=abs(float(row[second])),
+                points=tuple((float(row[along]), float(row[height])) for _, along, height in point_columns(name)),
+                free_sides={
+                    (plateau, kind): FreeSide(
+                        float(row[f"{name}_{plateau}_{kind}_q"]), float(row[f"{name}_{plateau}_{kind}_v0_mm"])
+                    )
+                    for plateau in PLATEAUX
+                    for kind in KINDS
+                },
+            )
+
+        return cls(
+            name=str(row["name"]),
+            family=str(row["family"]),
+            weave=Weave(int(row["over"]), int(row["under"]), int(row["step"])),
+            section=str(row["section"]),
+            lateral_height=float(row["lateral_height_mm"]),
+            fabric_thickness=float(row["fabric_thickness_mm"]),
+            weft=direction("weft"),
+            warp=direction("warp"),
+        )
+
+
+_SCALARS = ("crossed_spacing_mm", "width_mm", "thickness_mm", "crimp", "slope", "amplitude_mm")
+
+
+@dataclass(frozen=True)
+class SolvedTable:
+    """A whole solved table, column by column; every column is a list of one value a row.
+
+    ``comparisons[row]`` lists (quantity, measured, model) of what a row measured beyond what
+    identified it.
+    """
+
+    columns: Mapping[str, Sequence]
+    comparisons: tuple[tuple[tuple[str, float, float], ...], ...]
+
+    def __len__(self) -> int:
+        return len(self.columns["name"])
+
+    def row(self, name: str) -> dict[str, object]:
+        """One row as a mapping of column to value. Raises KeyError."""
+        try:
+            at = self.columns["name"].index(name)
+        except ValueError:
+            raise KeyError(name) from None
+        return {column: values[at] for column, values in self.columns.items()}
+
+    def __getitem__(self, name: str) -> SolvedFabric:
+        """One row as the value that drives a master. Raises KeyError."""
+        return SolvedFabric.from_row(self.row(name))
+
+    def only(self, name: str) -> SolvedTable:
+        """The table of one row. Raises KeyError."""
+        at = self.columns["name"].index(name)
+        return SolvedTable({c: [v[at]] for c, v in self.columns.items()}, self.comparisons[at : at + 1])
+
+    def write(self, path: str | Path) -> None:
+        """Write the table as CSV; numbers so that reading gives the same bits."""
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(self.columns)
+            writer.writerows(zip(*self.columns.values()))
+
+
+def read_solved(path: str | Path, name: str | None = None) -> SolvedFabric:
+    """Read one fabric from a solved table (its first row, or the row called ``name``).
+
+    Raises :class:`InputError` where the file, the row or a value of it is missing.
+    """
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file))
+    except OSError as error:
+        raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
+    rows = [row for row in rows if name in (None, row.get("name"))]
+    if not rows:
+        raise InputError(Problem("the table has no such row" if name else "the table is empty", str(path), row=name))
+    try:
+        return SolvedFabric.from_row(rows[0])
+    except KeyError as error:
+        raise InputError(Problem("this column is missing", str(path), column=str(error.args[0]))) from error
+    except (TypeError, ValueError) as error:
+        raise InputError(Problem(str(error), str(path), row=rows[0].get("name"))) from error
