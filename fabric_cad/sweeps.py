@@ -90,10 +90,12 @@ def control_planes(fabric: SolvedFabric, direction: str) -> tuple[float, ...]:
     return tuple(places)
 
 
-def trajectory(fabric: SolvedFabric, yarn: Yarn) -> Trajectory:
-    """The midline of one yarn: plateaux, half parabolas and straight segments (Fig. 11, 16)."""
+def trajectory(fabric: SolvedFabric, yarn: Yarn, planes: Sequence[float]) -> Trajectory:
+    """The midline of one yarn between its control planes (Fig. 11, 16).
+
+    Plateaux and half parabolas over the crossings, straight segments over the gaps.
+    """
     solved = fabric.directions[yarn.direction]
-    planes = control_planes(fabric, yarn.direction)
     pieces = []
     for k, high in enumerate(yarn.high):
         plateau = solved.z_high if high else solved.z_low
@@ -115,7 +117,7 @@ def trajectory(fabric: SolvedFabric, yarn: Yarn) -> Trajectory:
             ),
             _line(here[1], after, inner[1], outer[1]),
         ]
-    return Trajectory(yarn.direction, (yarn.index + 0.5) * fabric.crossed(yarn.direction).crossed_spacing, planes, tuple(pieces))
+    return Trajectory(yarn.direction, (yarn.index + 0.5) * fabric.crossed(yarn.direction).crossed_spacing, tuple(planes), tuple(pieces))
 
 
 def _line(start: float, end: float, z_start: float, z_end: float) -> Spline:

@@ -36,7 +36,7 @@ class Consistency:
 
     ``max_contact_gap`` is the largest distance between the facing sides of two crossing
     yarns, ``max_penetration`` how deep one enters another, ``contact_area`` the area in
-    which the distance is at most :data:`TOUCHING`.
+    which the distance is at most :data:`TOUCHING`; ``yarn_volumes`` has one entry a yarn.
     """
 
     max_penetration: float
@@ -44,7 +44,7 @@ class Consistency:
     overlap_volume: float
     contact_area: float
     thickness: float
-    yarn_volume: float
+    yarn_volumes: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -97,12 +97,12 @@ def inspect_cell(solids: Mapping[str, cq.Solid]) -> Consistency:
             area += meeting[3]
     everything = [field for each in fields.values() for field in each]
     return Consistency(
-        max_penetration=penetration,
-        max_contact_gap=gap,
-        overlap_volume=overlap,
-        contact_area=area,
+        max_penetration=float(penetration),
+        max_contact_gap=float(gap),
+        overlap_volume=float(overlap),
+        contact_area=float(area),
         thickness=_highest(everything, 1.0) + _highest(everything, -1.0),
-        yarn_volume=sum(solid.Volume() for solid in solids.values()),
+        yarn_volumes={name: solid.Volume() for name, solid in solids.items()},
     )
 
 

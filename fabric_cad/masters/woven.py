@@ -8,17 +8,26 @@ is all that a master adds.
 
 from __future__ import annotations
 
+import numpy as np
+
 from fabric_cad.cad import Cell, assemble, sweep
 from fabric_cad.solved import SolvedFabric
-from fabric_cad.sweeps import control_sections, trajectory
+from fabric_cad.sweeps import control_planes, control_sections, trajectory
 from fabric_cad.weaves import yarns_of
 
 
-def woven(fabric: SolvedFabric, weft_over_warp) -> Cell:
-    """The cell of a fabric; ``weft_over_warp[i][j]`` is True where weft i passes over warp j."""
+def woven(fabric: SolvedFabric, weft_over_warp: np.ndarray) -> Cell:
+    """The cell of a fabric; ``weft_over_warp[i, j]`` is True where weft i passes over warp j."""
     yarns = {}
     for yarn in yarns_of(weft_over_warp):
-        path = trajectory(fabric, yarn)  # M11 ... M16 or M21 ... M26, over the whole cell
-        sections = control_sections(fabric, yarn)  # one in each control plane of the path
+        planes = control_planes(fabric, yarn.direction)  # where along the yarn
+        path = trajectory(fabric, yarn, planes)  # M11 ... M16 or M21 ... M26, over the whole cell
+        sections = control_sections(fabric, yarn)  # one in each control plane
         yarns[yarn.name] = sweep(path, sections)
     return assemble(yarns)
+
+
+def show(cell: Cell, show_object) -> None:
+    """Hand every yarn of a cell to CQ-editor under its name and in its colour."""
+    for part in cell.assembly.children:
+        show_object(part.obj, name=part.name, options={"color": tuple(int(255 * c) for c in part.color.toTuple()[:3])})

@@ -1,7 +1,7 @@
 """The door to gmsh: STEP to hexahedra, and a mesh file back to arrays.
 
-gmsh reads the STEP, puts equally spaced nodes on every edge and meshes the yarns' faces
-transfinitely. A :mod:`template <fabric_cad.meshing.templates>` then fills each layer of
+gmsh reads the STEP, spaces nodes on every edge so that layers of them are vertical planes,
+and meshes the yarns' faces transfinitely. A :mod:`template <fabric_cad.meshing.templates>` then fills each layer of
 nodes between the faces, and two layers in a row bound the hexahedra.
 """
 
@@ -71,11 +71,12 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
         plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name], fabric) for plan in plans
     }
     for plan in plans:
-        _set_transfinite(gmsh, plan, solids[plan.yarn.name], faces[plan.yarn.name])
+        _set_transfinite(gmsh, plan, faces[plan.yarn.name])
     gmsh.option.setNumber("Mesh.MeshOnlyVisible", 1)
     gmsh.model.setVisibility([(2, each[side]) for each in faces.values() for side in ("start", "end")], 0)
     gmsh.model.mesh.generate(1)
-    _space_equally(gmsh)
+    for plan in plans:
+        _space(gmsh, plan, faces[plan.yarn.name])
     gmsh.model.mesh.generate(2)
     for plan in plans:
         _fill(gmsh, plan, solids[plan.yarn.name], faces[plan.yarn.name])
@@ -155,38 +156,47 @@ def _classify(gmsh, plan: _Plan, solid: int, fabric: SolvedFabric) -> dict:
     return faces
 
 
-def _set_transfinite(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
+def _curves(gmsh, plan: _Plan, faces: dict) -> Iterator[tuple[int, int]]:
+    """Every edge of a yarn's skin and the number of elements along it."""
+    seen = set()
     for key, face in faces.items():
         if key in ("start", "end"):
             continue
         segment, side = key
         for _, curve in gmsh.model.getBoundary([(2, face)], oriented=False):
+            if curve in seen:
+                continue
+            seen.add(curve)
             ends = [
                 gmsh.model.getValue(0, point, [])[plan.along_axis]
                 for _, point in gmsh.model.getBoundary([(1, curve)], oriented=False)
             ]
             if abs(ends[0] - ends[1]) > _PLACE:
-                parts = plan.counts[segment]
+                yield curve, plan.counts[segment]
             else:
-                parts = plan.across if side in ("top", "bottom") else plan.through
-            gmsh.model.mesh.setTransfiniteCurve(curve, parts + 1)
-        gmsh.model.mesh.setTransfiniteSurface(face)
-        gmsh.model.mesh.setRecombine(2, face)
+                yield curve, plan.across if side in ("top", "bottom") else plan.through
 
 
-def _space_equally(gmsh) -> None:
-    """Space the nodes of every curve equally in its parameter, which runs with x, y or z.
+def _set_transfinite(gmsh, plan: _Plan, faces: dict) -> None:
+    for curve, parts in _curves(gmsh, plan, faces):
+        gmsh.model.mesh.setTransfiniteCurve(curve, parts + 1)
+    for key, face in faces.items():
+        if key not in ("start", "end"):
+            gmsh.model.mesh.setTransfiniteSurface(face)
+            gmsh.model.mesh.setRecombine(2, face)
 
-    Layers of nodes are then vertical planes, whatever the slope of the two edges.
+
+def _space(gmsh, plan: _Plan, faces: dict) -> None:
+    """Space the nodes of every edge equally in its parameter, which runs with x, y or z.
+
+    gmsh spaces them by arc length, which differs between the two edges of a yarn.
     """
-    for _, curve in gmsh.model.getEntities(1):
+    for curve, parts in _curves(gmsh, plan, faces):
         tags, _, at = gmsh.model.mesh.getNodes(1, curve, returnParametricCoord=True)
-        if not len(tags):
-            continue
         low, high = gmsh.model.getParametrizationBounds(1, curve)
-        even = np.linspace(low[0], high[0], len(tags) + 2)[1:-1]
-        places = gmsh.model.getValue(1, curve, even).reshape(-1, 3)
-        for tag, place, parameter in zip(tags[np.argsort(at)], places, even):
+        parameters = np.linspace(low[0], high[0], parts + 1)[1:-1]
+        places = gmsh.model.getValue(1, curve, parameters).reshape(-1, 3)
+        for tag, place, parameter in zip(tags[np.argsort(at)], places, parameters):
             gmsh.model.mesh.setNode(tag, place, [parameter])
 
 

@@ -18,8 +18,8 @@ class MeshOptions:
     along the gap between two crossings.
     """
 
-    across: int = 8
-    crossing: int = 8
+    across: int = 12
+    crossing: int = 12
     through: int = 2
     gap: int = 4
 
@@ -63,16 +63,15 @@ def mesh_options(
     """Options for a fabric from what a user asked for; the rest follows.
 
     ``size`` is a target element size in mm. Without it the defaults hold, except that the
-    pointed edges get the columns that ``through`` layers need, and that ``crossing`` follows
-    ``across``. Raises :class:`InputError`.
+    pointed edges get three columns for every layer of ``through``, and that ``crossing``
+    follows ``across``. Raises :class:`InputError`.
     """
     if size is not None and not size > 0:
         raise InputError(Problem(f"{size:g} is not above 0", column="size"))
     default = MeshOptions()
     pointed = fabric.section == "lenticular"
     if size is None:
-        least = 2 * (through or default.through) if pointed else 1
-        across = across or max(default.across, least)
+        across = across or max(default.across, 3 * (through or 0) if pointed else 0)
         asked = MeshOptions(across, crossing or across, through or default.through, gap or default.gap)
     else:
         thickness = max(fabric.weft.thickness, fabric.warp.thickness)

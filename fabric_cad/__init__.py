@@ -1,0 +1,47 @@
+"""From a handful of numbers measured on a woven fabric to a CAD model and a hexahedral mesh of its cell.
+
+The consistent model of Hivet and Boisse (Finite Elements in Analysis and Design 42, 2005, 25-49)::
+
+    table = identify(read_family("families/twill.csv"))   # no CAD, whole tables at once
+    cell = build_cell(table["twill32"])                   # CadQuery: one valid solid a yarn
+    cell.write_step("twill32.step")
+    mesh_cell("twill32.step", table["twill32"], MeshOptions(), "twill32.msh")
+
+CadQuery and gmsh are loaded when a cell is first built or meshed, not by importing this package.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+__version__ = "0.1.0"
+
+_FROM = {
+    "read_family": "tables",
+    "read_families": "tables",
+    "identify": "identification",
+    "read_solved": "solved",
+    "SolvedFabric": "solved",
+    "build_cell": "masters",
+    "mesh_cell": "meshing",
+    "read_mesh": "meshing",
+    "mesh_options": "meshing",
+    "Mesh": "meshing",
+    "MeshOptions": "meshing",
+    "make_cell": "pipeline",
+    "FabricCadError": "errors",
+    "InputError": "errors",
+    "BuildError": "errors",
+    "OutputError": "errors",
+}
+__all__ = ["__version__", *_FROM]
+
+
+def __getattr__(name: str):
+    if name in _FROM:
+        return getattr(import_module(f".{_FROM[name]}", __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,247 @@
+"""The command ``fabric-cad``."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from . import __version__
+from .errors import FabricCadError, InputError, OutputError
+
+_DESCRIPTION = """\
+From a few numbers measured on a woven fabric to a CAD model and a hexahedral mesh of its
+elementary cell, in which the yarns touch exactly where they should and never run into each other.
+
+Fabrics are rows of the family tables plain.csv, twill.csv and satin.csv (lengths in mm):
+yarn density and width, and crimps or thicknesses. 'fabric-cad init' puts tables to start
+from into ./families.
+"""
+_EPILOG = "exit status: 0 done, 2 bad input or usage, 1 anything else"
+
+_MESH = (
+    ("size", float, "MM", "target element size in mm; numbers given below win over it"),
+    ("across", int, "N", "elements across a weft, and along a warp's crossings (default 12)"),
+    ("crossing", int, "N", "elements along a weft's crossings, and across a warp (default: as --across)"),
+    ("through", int, "N", "layers through the thickness, even for lenticular sections (default 2)"),
+    ("gap", int, "N", "elements along the gap between crossings, even (default 4)"),
+)
+
+
+def _parser() -> argparse.ArgumentParser:
+    common = argparse.ArgumentParser(add_help=False)
+    common.add_argument("--families", metavar="DIR", default=argparse.SUPPRESS, help="folder of the family tables (default: families)")
+    common.add_argument("--out", metavar="DIR", default=argparse.SUPPRESS, help="folder for results (default: build)")
+    common.add_argument("-q", "--quiet", action="store_true", default=argparse.SUPPRESS, help="say nothing but errors")
+    parser = argparse.ArgumentParser(
+        prog="fabric-cad",
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+        parents=[common],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"fabric-cad {__version__}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+
+    def command(name: str, run, text: str, **more) -> argparse.ArgumentParser:
+        added = commands.add_parser(name, parents=[common], help=text, description=text, epilog=_EPILOG, **more)
+        added.set_defaults(run=run)
+        return added
+
+    command("list", _list, "list every row with its weave, its model and what identifies it")
+    command("solve", _solve, "solve every row of every table into OUT/families/<family>.csv")
+    cell = command("cell", _cell, "make a row's STEP, mesh, deck, picture and report in OUT/<row>")
+    cell.add_argument("row", metavar="ROW", help="name of a row of any family table")
+    for name, kind, metavar, text in _MESH:
+        cell.add_argument(f"--{name}", type=kind, metavar=metavar, help=text)
+    cell.add_argument(
+        "--deck",
+        choices=("calculix", "abaqus"),
+        default="calculix",
+        help="dialect of the .inp; abaqus adds the *DISTRIBUTION TABLE that CalculiX does not know (default: calculix)",
+    )
+    show = command("show", _show, "show a row's cell in a window; makes it first if it is not there")
+    show.add_argument("row", metavar="ROW", help="name of a row of any family table")
+    command("init", _init, "put the shipped family tables into ./families (files that exist are kept)")
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit status."""
+    parsed = _parser().parse_args(arguments)
+    settings = vars(parsed)
+    settings.setdefault("families", "families")
+    settings.setdefault("out", "build")
+    settings.setdefault("quiet", False)
+    try:
+        status = parsed.run(parsed)
+        sys.stdout.flush()
+        return status
+    except FabricCadError as error:
+        print(error, file=sys.stderr)
+        return error.exit_status
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone; nothing to flush to it
+        return 1
+    except KeyboardInterrupt:
+        print("stopped; earlier results are as they were", file=sys.stderr)
+        return 1
+
+
+class _Progress:
+    """Stages as they run, on standard error: in place on a terminal, a line each elsewhere."""
+
+    def __init__(self, quiet: bool) -> None:
+        self.quiet = quiet
+        self.terminal = sys.stderr.isatty()
+
+    def __call__(self, name: str, seconds: float | None) -> None:
+        if self.quiet or (seconds is None and not self.terminal):
+            return
+        if seconds is None:
+            print(f"\r\033[K  {name} ...", end="", file=sys.stderr, flush=True)
+        else:
+            start = "\r\033[K" if self.terminal else ""
+            print(f"{start}  {name:14}{seconds:6.2f} s", file=sys.stderr, flush=True)
+
+
+def _tables(settings) -> tuple[dict, list[InputError]]:
+    """Solved tables by family, and the errors of those that have none."""
+    from .identification import identify
+    from .tables import read_families
+
+    solved, errors = {}, []
+    for family, table in read_families(settings.families).items():
+        if isinstance(table, InputError):
+            errors.append(table)
+            continue
+        try:
+            solved[family] = table, identify(table)
+        except InputError as error:
+            errors.append(error)
+    return solved, errors
+
+
+def _raise(errors: list[InputError]) -> None:
+    if errors:
+        raise InputError([problem for error in errors for problem in error.problems])
+
+
+def _list(settings) -> int:
+    solved, errors = _tables(settings)
+    lines = [("row", "weave", "section", "model", "identified by", "thickness mm")]
+    for family, (measured, table) in solved.items():
+        columns = table.columns
+        for at, name in enumerate(columns["name"]):
+            weave = measured.weaves[at]
+            kind = f"{weave.over}*{weave.under}" if family != "satin" else f"{weave.repeat} step {weave.step}"
+            quantities = ["density", "width", *columns["identified_by"][at].split()]
+            lines.append(
+                (
+                    name,
+                    f"{family} {kind}",
+                    columns["section"][at],
+                    f"{columns['parameters'][at]} parameters",
+                    ", ".join(quantities),
+                    f"{columns['fabric_thickness_mm'][at]:.4g}",
+                )
+            )
+    if not settings.quiet:
+        widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
+        for line in lines:
+            print("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip())
+    _raise(errors)
+    return 0
+
+
+def _solve(settings) -> int:
+    from .staging import staged
+
+    solved, errors = _tables(settings)
+    target = Path(settings.out) / "families"
+    with staged(target) as aside:
+        for family, (_, table) in solved.items():
+            table.write(aside / f"{family}.csv")
+    if not settings.quiet:
+        for family, (_, table) in solved.items():
+            print(f"{target / family}.csv: {len(table)} rows")
+            _print_notes(table)
+    _raise(errors)
+    return 0
+
+
+def _print_notes(table) -> None:
+    """What a solved table has to say beyond its numbers."""
+    columns = table.columns
+    for at, name in enumerate(columns["name"]):
+        if columns["other_weft_thickness_mm"][at] != "":
+            print(
+                f"  {name}: two solutions, yarns of {columns['weft_thickness_mm'][at]:.4g} (weft) and "
+                f"{columns['warp_thickness_mm'][at]:.4g} mm (warp), taken, or {columns['other_weft_thickness_mm'][at]:.4g} "
+                f"and {columns['other_warp_thickness_mm'][at]:.4g} mm; column thicker = weft or warp chooses"
+            )
+        for quantity, measured, model in table.comparisons[at]:
+            difference = 100 * (model - measured) / measured
+            print(f"  {name}: {quantity} measured {measured:.4g}, model {model:.4g} ({difference:+.2f} %)")
+
+
+def _cell(settings) -> int:
+    from .pipeline import Stages, find_row, make_cell
+    from .report import summary
+
+    row, others = find_row(settings.families, settings.row)
+    if not settings.quiet:
+        for error in others:
+            print(f"note, in a table this row is not of: {error}", file=sys.stderr)
+    mesh = {name: getattr(settings, name) for name, *_ in _MESH if getattr(settings, name) is not None}
+    report = make_cell(row, settings.out, mesh, settings.deck, Stages(_Progress(settings.quiet)))
+    if not settings.quiet:
+        print(summary(report))
+        folder = Path(settings.out) / settings.row
+        for name in (*(f"{settings.row}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")), "solved.csv", "report.json"):
+            print(f"  {folder / name}")
+    return 0
+
+
+def _show(settings) -> int:
+    mesh_file = Path(settings.out) / settings.row / f"{settings.row}.msh"
+    if not mesh_file.exists():
+        for name, *_ in _MESH:
+            setattr(settings, name, None)
+        settings.deck = "calculix"
+        _cell(settings)
+    from .meshing.mesher import read_mesh
+    from .views import show_cell
+
+    show_cell(read_mesh(mesh_file), settings.row)
+    return 0
+
+
+def shipped_families() -> Path:
+    """Folder of the family tables that come with the package."""
+    inside = Path(__file__).parent / "families"
+    return inside if inside.is_dir() else Path(__file__).parents[1] / "families"
+
+
+def _init(settings) -> int:
+    target = Path("families")
+    try:
+        target.mkdir(exist_ok=True)
+        for table in sorted(shipped_families().glob("*.csv")):
+            place = target / table.name
+            if place.exists():
+                message = f"{place}: kept, it is there already"
+            else:
+                shutil.copyfile(table, place)
+                message = f"{place}: written"
+            if not settings.quiet:
+                print(message)
+    except OSError as error:
+        raise OutputError(f"{error.filename or target}: cannot be written: {error.strerror}") from error
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,15 @@
+"""The generic models, one per weave type; each opens in CQ-editor as it is."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from ..solved import SolvedFabric
+
+
+def build_cell(fabric: SolvedFabric):
+    """The :class:`~fabric_cad.cad.Cell` of a solved fabric, built by the master of its family.
+
+    Raises :class:`~fabric_cad.errors.BuildError` where OCCT makes no valid solid of a yarn.
+    """
+    return import_module(f"{__name__}.{fabric.family}").cell(fabric)

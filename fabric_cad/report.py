@@ -1,0 +1,223 @@
+"""The report of a cell: what its files hold, measured on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import BuildError
+from .meshing.mesh import Mesh
+from .solved import Direction, SolvedFabric, point_columns
+
+COINCIDENT = 1e-9
+"""Distance (mm) up to which two nodes, or two faces, count as at the same place."""
+
+
+@dataclass(frozen=True)
+class Pairing:
+    """How nodes of a mesh pair up: of ``nodes``, ``paired`` have exactly one partner in place."""
+
+    nodes: int
+    paired: int
+
+
+def contact_pairing(mesh: Mesh) -> Pairing:
+    """Nodes on contact faces, and those that coincide with exactly one of the other direction."""
+    from scipy.spatial import cKDTree
+
+    weft, warp = (
+        np.concatenate([np.unique(q) for name, q in mesh.surfaces_named("contact").items() if name.startswith(direction)])
+        for direction in ("weft", "warp")
+    )
+    paired = 0
+    for nodes, others in ((weft, warp), (warp, weft)):
+        partners = cKDTree(mesh.points[others]).query_ball_point(mesh.points[nodes], COINCIDENT, return_length=True)
+        paired += int(np.count_nonzero(partners == 1))
+    return Pairing(len(weft) + len(warp), paired)
+
+
+def end_pairing(mesh: Mesh, period: tuple[float, float]) -> Pairing:
+    """Nodes on the yarns' start sections, and those that match one on the end, a period further."""
+    from scipy.spatial import cKDTree
+
+    count = paired = 0
+    for name in mesh.surfaces_named("start"):
+        shift = np.array([period[0], 0.0, 0.0]) if name.startswith("weft") else np.array([0.0, period[1], 0.0])
+        start, end = (mesh.points[mesh.nodes_of(name.replace("_start", ending))] for ending in ("_start", "_end"))
+        partners = cKDTree(end).query_ball_point(start + shift, COINCIDENT, return_length=True)
+        count += len(start)
+        paired += int(np.count_nonzero(partners == 1)) if len(start) == len(end) else 0
+    return Pairing(count, paired)
+
+
+def cell_report(
+    fabric: SolvedFabric,
+    row: Mapping[str, object],
+    comparisons,
+    consistency,
+    mesh: Mesh,
+    quality: np.ndarray,
+    allowed_quality: float,
+    yarn_data: Mapping[str, float | None],
+    seconds: Mapping[str, float],
+) -> dict:
+    """The content of ``report.json``; lengths mm.
+
+    ``consistency`` is what :func:`fabric_cad.cad.inspect_cell` measured on the STEP,
+    ``mesh`` and ``quality`` come from the mesh file, ``yarn_data`` holds
+    ``weft_linear_density_tex``, ``warp_linear_density_tex`` and ``fibre_density_g_cm3``.
+    """
+    contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.period)
+    identified = {name: _identified(name, fabric.directions[name]) for name in ("weft", "warp")}
+    identified["fabric_thickness_mm"] = fabric.fabric_thickness
+    identified["identified_by"] = str(row["identified_by"]).split()
+    if row["other_weft_thickness_mm"] != "":
+        identified["other_solution"] = {
+            "weft_thickness_mm": float(row["other_weft_thickness_mm"]),
+            "warp_thickness_mm": float(row["other_warp_thickness_mm"]),
+        }
+    return {
+        "row": fabric.name,
+        "family": fabric.family,
+        "weave": {
+            "over": fabric.weave.over,
+            "under": fabric.weave.under,
+            "step": fabric.weave.step,
+            "wefts": fabric.weave.repeat,
+            "warps": fabric.weave.repeat,
+        },
+        "section": fabric.section,
+        "parameters": int(row["parameters"]),
+        "identified": identified,
+        "measured_vs_model": [
+            {
+                "quantity": quantity,
+                "measured": measured,
+                "model": model,
+                "difference_percent": 100 * (model - measured) / measured,
+            }
+            for quantity, measured, model in comparisons
+        ],
+        "consistency": {
+            "max_penetration_mm": consistency.max_penetration,
+            "max_contact_gap_mm": consistency.max_contact_gap,
+            "overlap_volume_mm3": consistency.overlap_volume,
+            "contact_area_mm2": consistency.contact_area,
+            "thickness_mm": consistency.thickness,
+        },
+        "volumes": _volumes(fabric, consistency, yarn_data),
+        "mesh": {
+            "nodes": len(mesh.points),
+            "hexahedra": len(mesh.hexahedra),
+            "other_elements": mesh.other_elements,
+            "min_scaled_jacobian": float(quality.min()),
+            "median_scaled_jacobian": float(np.median(quality)),
+            "scaled_jacobian_edges_allow": allowed_quality,
+            "contact_nodes": contact.nodes,
+            "coincident_contact_nodes": contact.paired,
+            "end_nodes": ends.nodes,
+            "matching_end_nodes": ends.paired,
+        },
+        "seconds": dict(seconds),
+    }
+
+
+def _identified(name: str, solved: Direction) -> dict:
+    return {
+        "slope": solved.slope,
+        "p_low": solved.p_low,
+        "p_high": solved.p_high,
+        "amplitude_mm": solved.amplitude,
+        "thickness_mm": solved.thickness,
+        "width_mm": solved.width,
+        "spacing_mm": solved.crossed_spacing,
+        "crimp": solved.crimp,
+        "control_points": {
+            point: list(place) for (point, _, _), place in zip(point_columns(name), solved.points)
+        },
+    }
+
+
+def _volumes(fabric: SolvedFabric, consistency, yarn_data: Mapping[str, float | None]) -> dict:
+    x, y = fabric.period
+    cell = x * y * consistency.thickness
+    total = sum(consistency.yarn_volumes.values())
+    volumes = {"yarn_mm3": total, "cell_mm3": cell, "yarn_volume_fraction": total / cell}
+    tex = {name: yarn_data.get(f"{name}_linear_density_tex") for name in ("weft", "warp")}
+    fibre = yarn_data.get("fibre_density_g_cm3")
+    if all(tex.values()):  # tex is g/km; yarns per mm times g/km is g/m2
+        volumes["areal_density_g_m2"] = sum(
+            tex[name] * (1 + fabric.directions[name].crimp) / fabric.crossed(name).crossed_spacing for name in tex
+        )
+    for name, extent in (("weft", x), ("warp", y)):
+        if tex[name] and fibre:
+            section = tex[name] / fibre * 1e-3  # mm2 of solid fibre
+            length = fabric.weave.repeat * extent * (1 + fabric.directions[name].crimp)
+            yarns = sum(v for yarn, v in consistency.yarn_volumes.items() if yarn.startswith(name))
+            volumes[f"{name}_fibre_fraction"] = section * length / yarns
+    return volumes
+
+
+def check_report(report: dict) -> None:
+    """Raise :class:`BuildError` where a report shows a cell that is not consistent."""
+    consistency, mesh = report["consistency"], report["mesh"]
+    wrong = []
+    for key in ("max_penetration_mm", "max_contact_gap_mm"):
+        if not consistency[key] <= COINCIDENT:
+            wrong.append(f"{key} is {consistency[key]:.3g}, above {COINCIDENT:g}")
+    if mesh["other_elements"]:
+        wrong.append(f"{mesh['other_elements']} elements are no hexahedra")
+    if not mesh["min_scaled_jacobian"] > 0:
+        wrong.append(f"min_scaled_jacobian is {mesh['min_scaled_jacobian']:.3g}, not above 0")
+    for nodes, paired in (("contact_nodes", "coincident_contact_nodes"), ("end_nodes", "matching_end_nodes")):
+        if mesh[nodes] != mesh[paired]:
+            wrong.append(f"only {mesh[paired]} of {mesh[nodes]} {nodes} are paired")
+    if wrong:
+        raise BuildError(f"{report['row']}: the cell is not consistent: " + "; ".join(wrong))
+
+
+def summary(report: dict) -> str:
+    """A short table of a report for a person."""
+    weave, found, mesh = report["weave"], report["identified"], report["mesh"]
+    touch, volumes = report["consistency"], report["volumes"]
+    kind = f"{report['family']} {weave['over']}*{weave['under']}" + (f" step {weave['step']}" if report["family"] == "satin" else "")
+    lines = [
+        f"{report['row']}: {kind}, {weave['wefts']} wefts x {weave['warps']} warps, "
+        f"{report['section']} sections, {report['parameters']} parameters",
+        f"  {'':22}{'weft':>12}{'warp':>12}",
+    ]
+    for label, key, form in (
+        ("crimp %", "crimp", lambda v: f"{100 * v:.4g}"),
+        ("width mm", "width_mm", lambda v: f"{v:.4g}"),
+        ("thickness mm", "thickness_mm", lambda v: f"{v:.4g}"),
+        ("amplitude mm", "amplitude_mm", lambda v: f"{v:.4g}"),
+        ("slope", "slope", lambda v: f"{v:.4g}"),
+    ):
+        lines.append(f"  {label:22}{form(found['weft'][key]):>12}{form(found['warp'][key]):>12}")
+    lines.append(f"  fabric thickness      {touch['thickness_mm']:.4g} mm")
+    if "other_solution" in found:
+        other = found["other_solution"]
+        lines.append(
+            "  two solutions         the fabric thickness also allows yarns of "
+            f"{other['weft_thickness_mm']:.4g} (weft) and {other['warp_thickness_mm']:.4g} mm (warp); "
+            "column thicker = weft or warp chooses"
+        )
+    for each in report["measured_vs_model"]:
+        lines.append(
+            f"  measured, model       {each['quantity']} {each['measured']:.4g}, {each['model']:.4g} "
+            f"({each['difference_percent']:+.2f} %)"
+        )
+    lines += [
+        f"  contact               gap {touch['max_contact_gap_mm']:.1e} mm, penetration {touch['max_penetration_mm']:.1e} mm, "
+        f"overlap {touch['overlap_volume_mm3']:.1e} mm3, area {touch['contact_area_mm2']:.4g} mm2",
+        f"  yarn volume           {volumes['yarn_mm3']:.5g} mm3, fraction {volumes['yarn_volume_fraction']:.3f}"
+        + (f", areal density {volumes['areal_density_g_m2']:.4g} g/m2" if "areal_density_g_m2" in volumes else ""),
+        f"  mesh                  {mesh['hexahedra']} hexahedra, {mesh['nodes']} nodes, "
+        f"{mesh['coincident_contact_nodes']} of {mesh['contact_nodes']} contact nodes coincide",
+        f"  scaled Jacobian       min {mesh['min_scaled_jacobian']:.3f}, median {mesh['median_scaled_jacobian']:.3f}; "
+        f"the yarns' edges allow {mesh['scaled_jacobian_edges_allow']:.3f}",
+        f"  seconds               {sum(report['seconds'].values()):.1f}",
+    ]
+    return "\n".join(lines)
