@@ -89,7 +89,7 @@ def draw_cell(mesh: Mesh, path: str | Path) -> None:
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # no noise about a missing X server
     plotter = _plotter(mesh, off_screen=True)
     try:
-        plotter.enable_anti_aliasing("ssaa")
+        plotter.enable_anti_aliasing("msaa", multi_samples=8)
         image = plotter.screenshot(None, return_img=True)
     finally:
         plotter.close()

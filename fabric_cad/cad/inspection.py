@@ -55,6 +55,7 @@ class _HeightField:
     swapped: bool  # u runs along y
     x: tuple[float, ...]  # knot lines, ends included
     y: tuple[float, ...]
+    z: tuple[float, float]  # bounds of its poles, and so of the face
 
     @property
     def rectangle(self) -> tuple[float, float, float, float]:
@@ -131,7 +132,7 @@ def _height_fields(solid: cq.Solid) -> tuple[_HeightField, ...]:
             lines[int(axis)] = tuple(_scaled(knot, knots[0], knots[-1], *ends) for knot in knots)
         if lines[0][0] > lines[0][-1] or lines[1][0] > lines[1][-1]:
             raise BuildError("a yarn's face does not run along the cell's axes")
-        fields.append(_HeightField(surface, bool(swapped), lines[0], lines[1]))
+        fields.append(_HeightField(surface, bool(swapped), lines[0], lines[1], (poles[..., 2].min(), poles[..., 2].max())))
     return tuple(fields)
 
 
@@ -139,9 +140,10 @@ def _common_rectangles(first, second) -> set[tuple[float, float, float, float]]:
     """Plan rectangles in which faces of two yarns lie over each other."""
     boxes = [np.array([field.rectangle for field in fields]) for fields in (first, second)]
     hulls = [(box[:, 0].min(), box[:, 1].max(), box[:, 2].min(), box[:, 3].max()) for box in boxes]
-    if _intersection(*hulls) is None:
+    if (shared := _intersection(*hulls)) is None:
         return set()
-    common = (_intersection(a.rectangle, b.rectangle) for a, b in product(first, second))
+    near = [[field for field in fields if _intersection(field.rectangle, shared)] for fields in (first, second)]
+    common = (_intersection(a.rectangle, b.rectangle) for a, b in product(*near))
     return {rectangle for rectangle in common if rectangle is not None}
 
 
@@ -196,19 +198,22 @@ def _rule(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
 
 def _highest(fields: list[_HeightField], sign: float) -> float:
     """Largest sign * z over all faces, mm."""
-    best = []
-    for field in fields:
+    best, where = -np.inf, None
+    for field in sorted(fields, key=lambda each: -max(sign * z for z in each.z)):
+        if max(sign * z for z in field.z) <= best:
+            break  # no pole of this face, or of any that follow, is higher
         x0, x1, y0, y1 = field.rectangle
-        for x, y in product(np.linspace(x0, x1, 5).tolist(), np.linspace(y0, y1, 5).tolist()):
-            best.append((sign * field.at(*_inside(field, x, y))[0], x, y, field))
-    best.sort(key=lambda each: each[0])
-    top, x, y, field = best[-1]
+        for at in product(np.linspace(x0, x1, 9).tolist(), np.linspace(y0, y1, 9).tolist()):
+            z = sign * field.at(*_inside(field, *at))[0]
+            if z > best:
+                best, where = z, (field, at)
+    field, at = where
     x0, x1, y0, y1 = field.rectangle
     refined = minimize(
         lambda at: -sign * field.at(*_inside(field, *at))[0],
-        (x, y),
+        at,
         bounds=((x0, x1), (y0, y1)),
         method="L-BFGS-B",
         options={"ftol": 1e-15, "gtol": 1e-12},
     )
-    return max(top, float(-refined.fun))
+    return max(best, float(-refined.fun))
