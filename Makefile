@@ -1,0 +1,72 @@
+# Every target that needs the environment makes it first, from the pinned and hashed requirements.lock.
+
+PYTHON ?= python3
+WEAVE ?= twill32
+OPTIONS ?=
+BIN := .venv/bin
+READY := .venv/.ready
+
+.DEFAULT_GOAL := help
+
+.PHONY: help
+help: ## show this help
+	@echo "usage: make TARGET [NAME=VALUE ...]"
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@echo "e.g.   make cell WEAVE=satin8 OPTIONS='--through 4'"
+
+$(READY): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "fabric-cad needs Python 3.11 or later; name one with PYTHON=..."; exit 1; }
+	@echo "installing the environment into .venv (once, about 2 GB) ..."
+	@$(PYTHON) -m venv --clear .venv
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@touch $@
+
+.PHONY: install
+install: $(READY) ## make the environment .venv
+
+.PHONY: cell
+cell: $(READY) ## WEAVE=row: STEP, mesh, deck, picture and report of one row in build/<row>
+	@$(BIN)/fabric-cad cell $(WEAVE) $(OPTIONS)
+
+.PHONY: show
+show: $(READY) ## WEAVE=row: the same cell in an interactive window
+	@$(BIN)/fabric-cad show $(WEAVE)
+
+.PHONY: list
+list: $(READY) ## every row of the family tables
+	@$(BIN)/fabric-cad list
+
+.PHONY: families
+families: $(READY) ## solve every row of every table into build/families/<family>.csv
+	@$(BIN)/fabric-cad solve
+
+.PHONY: test
+test: $(READY) ## run the tests
+	@$(BIN)/python -m pytest -n 2 --dist loadfile
+
+.PHONY: lint
+lint: $(READY) ## check the sources
+	@$(BIN)/ruff check fabric_cad tests
+
+.PHONY: stability
+stability: $(READY) ## 200 random fabrics, each through CAD and mesh in a child process
+	@$(BIN)/python tests/stability.py
+
+.PHONY: bench
+bench: $(READY) ## time and memory of every stage, as one table
+	@$(BIN)/python tests/bench.py
+
+.PHONY: golden
+golden: $(READY) ## rewrite the golden decks of the tests
+	@$(BIN)/python -m pytest -n 0 tests/test_deck.py --rewrite-golden
+
+.PHONY: lock
+lock: ## renew requirements.lock from pyproject.toml (needs uv)
+	@uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --generate-hashes \
+		--no-header --no-annotate --no-emit-index-url --no-emit-find-links -q -o requirements.lock
+
+.PHONY: clean
+clean: ## remove results (build); keeps .venv
+	@rm -rf build
