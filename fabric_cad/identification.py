@@ -105,6 +105,10 @@ _RULES: dict[tuple[int, ...], _Rule] = {
 _BOUNDED = ((0, 1, 4), (2, 3, 4), (0, 2, 4), (1, 3, 4))
 """Sets in which the sum of the first two is the least fabric thickness there is."""
 
+_ALONE = {(0, 2, 4): "warp", (1, 3, 4): "weft"}
+"""Sets that tell of one direction only where that one reaches the fabric's faces: then (15)
+repeats what crimp and thickness say, and the other direction is left open."""
+
 _SYMBOLS = ("A1", "A2", "b1", "b2", "w")
 
 
@@ -264,6 +268,12 @@ def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Pr
             fabric < least * (1 - _ROUNDING),
             last,
             lambda at: f"{fabric[at]:g} is below {' + '.join(_SYMBOLS[k] for k in used[at][:2])} = {least[at]:.4g} mm",
+        )
+        refuse(
+            np.array([columns in _ALONE for columns in used], dtype=bool) & (fabric <= least * (1 + _ROUNDING)),
+            last,
+            lambda at: f"{fabric[at]:g} is A + b of the same direction again and says nothing of the "
+            f"{_ALONE[used[at]]}; fill {_ALONE[used[at]]}_crimp or {_ALONE[used[at]]}_thickness_mm",
         )
         rise = _rises(measured, transitions, closed)
         for direction, A, b, other in (("weft", closed.A1, closed.b1, "warp"), ("warp", closed.A2, closed.b2, "weft")):

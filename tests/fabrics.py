@@ -1,0 +1,80 @@
+"""Random and written fabrics for the tests: rows go through a real table, as a user's do."""
+
+from __future__ import annotations
+
+import tempfile
+from math import gcd
+from pathlib import Path
+
+import numpy as np
+
+from fabric_cad.tables import Family, read_family
+
+
+def table(family: str, *rows: dict, folder: Path | None = None) -> Family:
+    """A family table of the given rows (column to value), written and read."""
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    lines = [",".join(columns), *(",".join(_text(row.get(column, "")) for column in columns) for row in rows)]
+    with tempfile.TemporaryDirectory() as scratch:
+        path = Path(folder or scratch) / f"{family}.csv"
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return read_family(path)
+
+
+def _text(value) -> str:
+    return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
+
+
+def random_row(rng: np.random.Generator, name: str = "random") -> tuple[str, dict]:
+    """(family, row) of a valid-looking fabric: m, n to 5, harness to 12, widths 0.6 to 0.97 of
+    the spacing, crimps 0.0005 to 0.03, balanced or not, lenticular or flat."""
+    family = str(rng.choice(["plain", "twill", "satin"]))
+    row: dict = {"name": name}
+    if family == "twill":
+        row |= {"over": int(rng.integers(1, 6)), "under": int(rng.integers(1, 6))}
+    if family == "satin":
+        harness = int(rng.integers(5, 13))
+        row |= {"harness": harness, "step": int(rng.choice([k for k in range(1, harness) if gcd(k, harness) == 1]))}
+    spacing = float(np.exp(rng.uniform(np.log(0.4), np.log(6.0))))
+    row |= _direction(rng, "weft", spacing)
+    if rng.random() < 0.5:
+        row |= _direction(rng, "warp", spacing * float(rng.uniform(0.7, 1.4)))
+        row |= _thickness(rng, family, row)
+    if rng.random() < 0.3:
+        row |= {"section": "flat", "lateral_height_mm": spacing * float(rng.uniform(0.002, 0.03))}
+    return family, row
+
+
+def _direction(rng: np.random.Generator, direction: str, spacing: float) -> dict:
+    return {
+        f"{direction}_density_per_mm": 1 / spacing,
+        f"{direction}_width_mm": spacing * float(rng.uniform(0.6, 0.97)),
+        f"{direction}_crimp": float(np.exp(rng.uniform(np.log(0.0005), np.log(0.03)))),
+    }
+
+
+def _thickness(rng: np.random.Generator, family: str, row: dict) -> dict:
+    """One thickness, drawn around what the two crimps imply for equally thick yarns."""
+    from fabric_cad.lengths import slope_from_crimp
+
+    repeat = {"plain": 2, "twill": row.get("over", 0) + row.get("under", 0), "satin": row.get("harness")}[family]
+    total = 0.0
+    for direction, crossed in (("weft", "warp"), ("warp", "weft")):
+        a, c = 1 / row[f"{crossed}_density_per_mm"], row[f"{crossed}_width_mm"]
+        total += float(slope_from_crimp(row[f"{direction}_crimp"], repeat / 2 * a, c, a - c)) * (a - c / 2)
+    kind = str(rng.choice(["weft_thickness_mm", "warp_thickness_mm", "fabric_thickness_mm"]))
+    if kind == "fabric_thickness_mm":
+        return {kind: total * float(rng.uniform(0.98, 1.2))}
+    return {kind: total * float(rng.uniform(0.35, 0.65))}
+
+
+TWILL32 = {"name": "twill32", "over": 3, "under": 2, "weft_density_per_mm": 0.35, "weft_width_mm": 2.4, "weft_crimp": 0.004}
+UNBALANCED = {
+    "name": "unbalanced",
+    "weft_density_per_mm": 0.25,
+    "weft_width_mm": 2.8,
+    "weft_crimp": 0.006,
+    "warp_density_per_mm": 0.22,
+    "warp_width_mm": 3.3,
+    "warp_crimp": 0.003,
+}

@@ -1,0 +1,54 @@
+"""Section templates: conforming, complete, and leaving the outline alone."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from fabric_cad.meshing.templates import flat_template, lenticular_template
+
+TEMPLATES = [flat_template(a, t) for a, t in ((1, 1), (4, 3), (8, 2))] + [
+    lenticular_template(a, t) for a, t in ((4, 2), (8, 2), (12, 2), (8, 4), (13, 4), (12, 6), (24, 8))
+]
+
+
+def outline_of(template, pointed):
+    """A lens (or a box with bulging sides) as the template's outline."""
+    if pointed:
+        v = np.linspace(-1, 1, template.outline // 2 + 1)
+        lower, upper = np.c_[v, -0.25 * (1 - v**2)], np.c_[v, 0.35 * (1 - v**2)]
+        return np.vstack([lower, upper[::-1][1:-1]])
+    corners = np.array([[-1, -0.3], [1, -0.2], [1, 0.2], [-1, 0.25]])
+    sides = []
+    across = next(a for a, t in ((1, 1), (4, 3), (8, 2)) if 2 * (a + t) == template.outline)
+    for start, end, parts in zip(
+        corners, np.roll(corners, -1, axis=0), [across, template.outline // 2 - across] * 2
+    ):
+        sides.append(start + np.linspace(0, 1, parts, endpoint=False)[:, None] * (end - start))
+    return np.vstack(sides)
+
+
+def area(polygon):
+    x, y = polygon[..., 0], polygon[..., 1]
+    return (x * np.roll(y, -1, axis=-1) - y * np.roll(x, -1, axis=-1)).sum(axis=-1) / 2
+
+
+@pytest.mark.parametrize("template", TEMPLATES, ids=lambda t: f"{t.outline}-{len(t.quads)}")
+def test_a_template_is_a_conforming_mesh_of_the_section(template):
+    outline = outline_of(template, pointed=template in TEMPLATES[3:])
+    nodes = np.vstack([outline, template.weights @ outline])
+    assert template.weights.sum(axis=1) == pytest.approx(1)  # moves and turns with its outline
+    areas = area(nodes[template.quads])
+    assert areas.min() > 0
+    assert areas.sum() == pytest.approx(area(outline))
+    edges = Counter(frozenset(pair) for quad in template.quads.tolist() for pair in zip(quad, quad[1:] + quad[:1]))
+    border = {frozenset((k, (k + 1) % template.outline)) for k in range(template.outline)}
+    assert {edge for edge, times in edges.items() if times == 1} == border
+    assert set(edges.values()) <= {1, 2}
+    assert set(template.quads.ravel()) == set(range(len(nodes)))
+
+
+@pytest.mark.parametrize(("across", "through"), [(8, 3), (7, 4), (2, 2)])
+def test_tips_that_do_not_fit(across, through):
+    with pytest.raises(ValueError):
+        lenticular_template(across, through)
