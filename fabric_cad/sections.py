@@ -37,7 +37,7 @@ def free_side(thickness, width, rise_left, rise_right, lateral_height):
     return q, width / 2 * (root_left - root_right) / (root_left + root_right)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Section:
     """A control section as quadratic spline poles over v, each array of shape (4,), mm.
 

@@ -25,7 +25,7 @@ from .solved import Direction, FreeSide, SolvedFabric
 from .weaves import Yarn
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Spline:
     """A polynomial spline z(t): ``knots`` with multiplicities, ``poles``, ``degree``."""
 
@@ -40,7 +40,7 @@ class Spline:
         return inner.mean(axis=1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trajectory:
     """Midline of a yarn over the cell: one spline between every two control planes.
 
@@ -54,7 +54,7 @@ class Trajectory:
     pieces: tuple[Spline, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Patch:
     """One tensor-product polynomial face z(t, v) of a yarn, t along and v across, mm.
 
@@ -70,7 +70,7 @@ class Patch:
     z: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Skin:
     """The closed surface of a yarn: strips of patches, one patch per pair of control planes."""
 

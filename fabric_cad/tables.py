@@ -64,7 +64,7 @@ _WHOLE = re.compile(r"\d{1,4}")
 _RESERVED = {"families", "con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in range(10)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Family:
     """The rows of one family table, as measured; every array has shape (rows,).
 

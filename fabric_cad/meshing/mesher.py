@@ -89,7 +89,7 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
     gmsh.write(str(msh))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Plan:
     """What a yarn's mesh will be before there is any."""
 
