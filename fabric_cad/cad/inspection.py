@@ -35,8 +35,8 @@ class Consistency:
     """How a cell's yarns meet; lengths mm, areas mm2, volumes mm3.
 
     ``max_contact_gap`` is the largest distance between the facing sides of two crossing
-    yarns, ``max_penetration`` how deep one enters another, ``contact_area`` the area in
-    which the distance is at most :data:`TOUCHING`; ``yarn_volumes`` has one entry a yarn.
+    yarns, ``max_penetration`` how deep one enters another, ``overlap_volume`` the integral of
+    that depth over the fabric's plane, ``contact_area`` the area in which the distance is at most :data:`TOUCHING`; ``yarn_volumes`` has one entry a yarn.
     """
 
     max_penetration: float
@@ -164,19 +164,23 @@ def _meeting(first, second, rectangle) -> tuple[float, float, float, float]:
     ]
     if any(len(fields) != 2 for fields in facing):
         raise BuildError("a yarn has not one top and one bottom face over a crossing")
-    penetration = gap = overlap = area = 0.0
-    for xs in _cells((x0, x1), [line for fields in facing for field in fields for line in field.x]):
-        for ys in _cells((y0, y1), [line for fields in facing for field in fields for line in field.y]):
-            for (x, wx), (y, wy) in product(zip(*_rule(*xs)), zip(*_rule(*ys))):
-                heights = [sorted(field.at(*_inside(field, x, y)) for field in fields) for fields in facing]
-                (low, high) = sorted(heights, key=lambda pair: pair[0][0] + pair[1][0])
-                distance = high[0][0] - low[1][0]
-                gap = max(gap, distance)
-                penetration = max(penetration, -distance)
-                overlap += max(-distance, 0.0) * wx * wy
-                if abs(distance) <= TOUCHING:
-                    area += high[0][1] * wx * wy
-    return penetration, gap, overlap, area
+    xs, wx = _rule((x0, x1), [line for fields in facing for field in fields for line in field.x])
+    ys, wy = _rule((y0, y1), [line for fields in facing for field in fields for line in field.y])
+    weights = np.outer(wx, wy)
+    # (yarn, face, x, y, [z, area of surface per area in plan]), faces sorted bottom first
+    found = np.array(
+        [[[[field.at(*_inside(field, x, y)) for y in ys] for x in xs] for field in fields] for fields in facing]
+    )
+    z = np.sort(found[..., 0], axis=1)
+    low, high = z[np.argsort(z.mean(axis=(1, 2, 3)))]
+    distance = high[0] - low[1]
+    stretch = found[0, np.argmin(np.abs(found[0, ..., 0] - low[1]).mean(axis=(1, 2))), ..., 1]
+    return (
+        max(0.0, -distance.min()),
+        max(0.0, distance.max()),
+        (np.maximum(-distance, 0.0) * weights).sum(),
+        (stretch * weights)[np.abs(distance) <= TOUCHING].sum(),
+    )
 
 
 def _inside(field: _HeightField, x: float, y: float) -> tuple[float, float]:
@@ -184,16 +188,14 @@ def _inside(field: _HeightField, x: float, y: float) -> tuple[float, float]:
     return min(max(x, field.x[0]), field.x[-1]), min(max(y, field.y[0]), field.y[-1])
 
 
-def _cells(ends: tuple[float, float], lines: list[float]) -> list[tuple[float, float]]:
-    """Intervals between the knot lines that lie within ``ends``."""
+def _rule(ends: tuple[float, float], lines: list[float]) -> tuple[list[float], np.ndarray]:
+    """Points and weights of the quadrature between two ends, knot line by knot line."""
     low, high = ends
     inner = sorted({round(line, 10) for line in lines if low + _PLAN < line < high - _PLAN})
-    places = [low, *inner, high]
-    return list(zip(places, places[1:]))
-
-
-def _rule(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
-    return low + (high - low) * _NODES, (high - low) * _WEIGHTS
+    places = np.array([low, *inner, high])
+    spans = np.diff(places)
+    points = places[:-1, None] + spans[:, None] * _NODES
+    return points.ravel().tolist(), (spans[:, None] * _WEIGHTS).ravel()
 
 
 def _highest(fields: list[_HeightField], sign: float) -> float:

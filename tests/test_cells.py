@@ -1,0 +1,257 @@
+"""Every row shipped, from its table to its files, each file opened again by something else."""
+
+import json
+import shutil
+import subprocess
+
+import meshio
+import numpy as np
+import pytest
+from PIL import Image
+
+from fabric_cad.cli import shipped_families
+from fabric_cad.edges import allowed_scaled_jacobian
+from fabric_cad.pipeline import find_row, make_cell
+from fabric_cad.solved import read_solved
+from fabric_cad.sweeps import control_planes, control_sections, skin, trajectory
+from fabric_cad.tables import read_families
+from fabric_cad.weaves import yarns_of
+
+ROWS = [name for table in read_families(shipped_families()).values() for name in table.names]
+
+
+class Made:
+    """One row's folder and what is in it."""
+
+    def __init__(self, name, out):
+        self.name, self.folder = name, out / name
+        row, _ = find_row(shipped_families(), name)
+        self.report = make_cell(row, out)
+        self.fabric = read_solved(self.folder / "solved.csv")
+
+    def file(self, kind):
+        return self.folder / f"{self.name}.{kind}"
+
+
+@pytest.fixture(scope="module", params=ROWS)
+def made(request, tmp_path_factory):
+    return Made(request.param, tmp_path_factory.mktemp("cells"))
+
+
+@pytest.fixture(scope="module")
+def twill32(tmp_path_factory):
+    return Made("twill32", tmp_path_factory.mktemp("twill32"))
+
+
+def test_every_file_is_there(made):
+    assert {file.name for file in made.folder.iterdir()} == {
+        *(f"{made.name}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")),
+        "solved.csv",
+        "report.json",
+    }
+    assert json.loads((made.folder / "report.json").read_text()) == made.report
+    assert [file.name for file in made.folder.parent.iterdir()] == [made.name]
+
+
+def test_yarns_touch_and_do_not_penetrate(made):
+    found = made.report["consistency"]
+    assert found["max_penetration_mm"] <= 1e-9
+    assert found["max_contact_gap_mm"] <= 1e-9
+    assert found["overlap_volume_mm3"] <= 1e-9
+    assert found["thickness_mm"] == pytest.approx(made.fabric.fabric_thickness, rel=1e-9)
+    # every crossing is in contact over the whole width of both yarns
+    plan = made.fabric.weft.width * made.fabric.warp.width * made.fabric.weave.repeat**2
+    assert plan < found["contact_area_mm2"] < plan * (1 + made.fabric.weft.slope**2 + made.fabric.warp.slope**2)
+
+
+def test_elements_are_hexahedra_as_good_as_the_edges_allow(made):
+    mesh = made.report["mesh"]
+    assert mesh["other_elements"] == 0
+    assert mesh["contact_nodes"] == mesh["coincident_contact_nodes"] > 0
+    assert mesh["end_nodes"] == mesh["matching_end_nodes"] > 0
+    allowed = allowed_scaled_jacobian(made.fabric)
+    assert mesh["scaled_jacobian_edges_allow"] == allowed
+    assert mesh["min_scaled_jacobian"] >= (0.30 if allowed >= 0.30 else 0.9 * allowed)
+
+
+def test_volumes_are_those_of_the_model(made):
+    from fabric_cad.cad import read_step
+
+    solids = read_step(made.file("step"))
+    fabric = made.fabric
+    for name, solid in solids.items():
+        yarn = next(y for y in yarns_of(fabric.weave.interlacement()) if y.name == name)
+        surface = skin(
+            trajectory(fabric, yarn, control_planes(fabric, yarn.direction)), control_sections(fabric, yarn)
+        )
+        assert solid.isValid()
+        assert solid.Volume() == pytest.approx(_volume_of(surface), rel=1e-9)
+    assert made.report["volumes"]["yarn_mm3"] == pytest.approx(sum(s.Volume() for s in solids.values()), rel=1e-12)
+
+
+def _volume_of(surface):
+    """Integral of top - bottom: the mean of a B-spline's poles, weighted by their knot spans."""
+    total = 0.0
+    for patch in surface.patches:
+        if patch.side in ("top", "bottom"):
+            weights = [
+                (s.knots[s.degree + 1 :] - s.knots[: -s.degree - 1]) / (s.degree + 1) for s in (patch.along, patch.across)
+            ]
+            total += (1 if patch.side == "top" else -1) * weights[0] @ patch.z @ weights[1]
+    return total
+
+
+def test_step_has_names_colours_and_common_tangents(made):
+    import cadquery as cq
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Curve
+    from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
+    from OCP.gp import gp_Vec
+
+    assembly = cq.Assembly.importStep(str(made.file("step")))
+    names, colours = [], {"weft": set(), "warp": set()}
+    for shape, name, _, colour in assembly:
+        names.append(name.split("/")[-1])
+        colours[names[-1].split("_")[0]].add(tuple(round(c, 3) for c in colour.toTuple()[:3]))
+    count = range(1, made.fabric.weave.repeat + 1)
+    assert names == [f"weft_{k}" for k in count] + [f"warp_{k}" for k in count]
+    assert len(colours["weft"]) == len(colours["warp"]) == 1 and colours["weft"] != colours["warp"]
+
+    def normal(face, point):
+        surface = BRep_Tool.Surface_s(face.wrapped)
+        at = GeomAPI_ProjectPointOnSurf(point, surface).LowerDistanceParameters()
+        p, du, dv = point.__class__(), gp_Vec(), gp_Vec()
+        surface.D1(*at, p, du, dv)
+        return np.array(du.Crossed(dv).Normalized().Coord())
+
+    shape, name, *_ = next(iter(assembly))
+    along = "x" if name.split("/")[-1].startswith("weft") else "y"
+    solid, checked = shape.Solids()[0], 0
+    width = made.fabric.weft.width
+    for edge in solid.Edges():
+        start, end = edge.startPoint(), edge.endPoint()
+        faces = [face for face in edge.ancestors(solid, "Face").Faces() if face.geomType() == "BSPLINE"]
+        across = abs(start.y - end.y) > 0.9 * width
+        if len(faces) != 2 or abs(getattr(start, along) - getattr(end, along)) > 1e-7 or not across:
+            continue  # true edges: the long lateral ones and the cell's ends
+        curve = BRepAdaptor_Curve(edge.wrapped)
+        for share in (0.07, 0.5, 0.81):
+            u = curve.FirstParameter() + share * (curve.LastParameter() - curve.FirstParameter())
+            one, other = (normal(face, curve.Value(u)) for face in faces)
+            assert np.degrees(np.arccos(min(1.0, abs(one @ other)))) < 0.01
+            checked += 1
+    assert checked == 3 * 2 * (3 * made.fabric.weave.repeat - 1)
+
+
+def test_step_is_small(twill32):
+    assert twill32.file("step").stat().st_size <= 2_000_000
+
+
+def test_common_volume_by_boolean_operation(twill32):
+    from fabric_cad.cad import read_step
+
+    solids = read_step(twill32.file("step"))
+    for pair in (("weft_1", "warp_1"), ("weft_1", "warp_5"), ("weft_3", "warp_2"), ("weft_1", "weft_2")):
+        first, second = (solids[name] for name in pair)
+        assert first.intersect(second).Volume() < 1e-9
+
+
+def test_inspection_sees_a_yarn_out_of_place(twill32):
+    from fabric_cad.cad import inspect_cell, read_step
+
+    solids = read_step(twill32.file("step"))
+    down = solids | {"weft_2": solids["weft_2"].moved(z=-1e-4)}  # into the warps below, off those above
+    found = inspect_cell(down)
+    assert found.max_penetration == pytest.approx(1e-4, rel=1e-6)
+    assert found.max_contact_gap == pytest.approx(1e-4, rel=1e-6)
+    plan = twill32.fabric.weft.width * twill32.fabric.warp.width
+    assert found.overlap_volume == pytest.approx(3 * plan * 1e-4, rel=1e-6)  # over three warps
+    aside = solids | {"weft_2": solids["weft_2"].moved(y=0.05)}
+    assert inspect_cell(aside).max_penetration > 1e-4
+
+
+def test_mesh_file_by_another_reader(made):
+    mesh = meshio.read(made.file("msh"))
+    kinds = {block.type for block in mesh.cells}
+    assert kinds == {"hexahedron", "quad"}
+    hexahedra = np.vstack([block.data for block in mesh.cells if block.type == "hexahedron"])
+    assert len(hexahedra) == made.report["mesh"]["hexahedra"]
+    assert len(mesh.points) == len(np.unique(hexahedra)) == made.report["mesh"]["nodes"]  # no orphan
+    names = {f"{d}_{k}" for d in ("weft", "warp") for k in range(1, made.fabric.weave.repeat + 1)}
+    kinds = ("contact", "free", "start", "end")
+    assert set(mesh.field_data) == names | {f"{name}_{kind}" for name in names for kind in kinds}
+    assert all(dimension == (3 if name in names else 2) for name, (_, dimension) in mesh.field_data.items())
+
+
+def test_vtu_by_another_reader(twill32):
+    mesh = meshio.read(twill32.file("vtu"))
+    data = {name: blocks[0] for name, blocks in mesh.cell_data.items()}
+    assert set(data) == {"yarn", "direction", "fibre_axis", "scaled_jacobian"}
+    assert data["scaled_jacobian"].min() == pytest.approx(twill32.report["mesh"]["min_scaled_jacobian"])
+    assert np.linalg.norm(data["fibre_axis"], axis=1) == pytest.approx(1)
+    fibre = np.abs(data["fibre_axis"])
+    assert (fibre[data["direction"] == 0, 0] > 0.7).all() and (fibre[data["direction"] == 1, 1] > 0.7).all()
+    assert set(np.unique(data["yarn"])) == set(range(1, 11))
+
+
+def test_picture_shows_both_directions(made):
+    image = np.asarray(Image.open(made.file("png")).convert("RGB"), dtype=int)
+    assert image.shape[0] >= 900 and image.shape[1] >= 1200
+    red, blue = image[..., 0], image[..., 2]
+    for share in ((red - blue > 60).mean(), (blue - red > 60).mean()):
+        assert share > 0.05
+    assert (image.min(axis=2) > 250).mean() > 0.1  # and a white ground
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
+def test_calculix_reads_the_deck_without_complaint(made):
+    run = subprocess.run(
+        ["ccx", made.name], cwd=made.folder, capture_output=True, text=True, timeout=120, check=False
+    )
+    for left in made.folder.glob(f"{made.name}.*"):
+        if left.suffix in (".cvg", ".dat", ".sta", ".frd", ".12d"):
+            left.unlink()
+    (made.folder / "spooles.out").unlink(missing_ok=True)
+    assert run.returncode == 0 and "Job finished" in run.stdout
+    assert "WARNING" not in run.stdout and "ERROR" not in run.stdout
+
+
+def test_masters_open_in_cq_editor(twill32, monkeypatch):
+    """CQ-editor runs a script with ``show_object``; so does CadQuery's own gateway."""
+    from cadquery import cqgi
+
+    from fabric_cad.masters import twill
+
+    script = cqgi.parse(open(twill.__file__, encoding="utf-8").read())
+    assert "SOLVED" in script.metadata.parameters
+    result = script.build({"SOLVED": str(twill32.folder / "solved.csv")})
+    assert result.success, result.exception
+    assert len(result.results) == 10
+    assert [shown.options["name"] if "name" in shown.options else None for shown in result.results][:1] in (["weft_1"], [None])
+
+
+def test_sizes_and_numbers_of_elements(twill32, tmp_path):
+    row, _ = find_row(shipped_families(), "twill32")
+    six = make_cell(row, tmp_path, {"through": 6})["mesh"]
+    assert six["min_scaled_jacobian"] >= 0.20
+    assert six["contact_nodes"] == six["coincident_contact_nodes"]
+    uneven = make_cell(row, tmp_path, {"across": 8, "crossing": 10, "gap": 2})["mesh"]
+    # wefts: 8 across, 10 along each crossing; warps the other way round; 2 through
+    in_section = {across: 2 * (across - 4) + 6 for across in (8, 10)}
+    assert uneven["hexahedra"] == 5 * 5 * (in_section[8] * (10 + 2) + in_section[10] * (8 + 2))
+    assert uneven["contact_nodes"] == uneven["coincident_contact_nodes"] == 2 * 25 * 9 * 11
+    sized = make_cell(row, tmp_path, {"size": 0.3})["mesh"]
+    assert sized["hexahedra"] == 10 * 5 * (2 * (8 - 4) + 6) * (8 + 2)
+
+
+def test_known_data_give_areal_density_and_fibre_fractions(tmp_path):
+    from fabrics import TWILL32, table
+
+    tex, density = 400.0, 1.79
+    row = table("twill", TWILL32 | {"weft_linear_density_tex": tex, "fibre_density_g_cm3": density})
+    made = make_cell(row, tmp_path, {"size": 0.6})
+    volumes = made["volumes"]
+    assert volumes["areal_density_g_m2"] == pytest.approx(2 * 0.35 * tex * 1.004)
+    fibre = volumes["areal_density_g_m2"] / density / 1000 * (5 / 0.35) ** 2  # mm of solid fibre x mm2 of cell
+    assert volumes["weft_fibre_fraction"] == pytest.approx(fibre / volumes["yarn_mm3"])
+    assert volumes["warp_fibre_fraction"] == pytest.approx(volumes["weft_fibre_fraction"])
