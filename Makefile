@@ -48,7 +48,8 @@ test: $(READY) ## run the tests
 
 .PHONY: lint
 lint: $(READY) ## check the sources
-	@$(BIN)/ruff check fabric_cad tests
+	@$(BIN)/ruff check -q fabric_cad tests
+	@$(BIN)/ruff format -q --check fabric_cad tests
 
 .PHONY: stability
 stability: $(READY) ## 200 random fabrics, each through CAD and mesh in a child process

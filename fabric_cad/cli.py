@@ -32,7 +32,9 @@ _MESH = (
 
 def _parser() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
-    common.add_argument("--families", metavar="DIR", default=argparse.SUPPRESS, help="folder of the family tables (default: families)")
+    common.add_argument(
+        "--families", metavar="DIR", default=argparse.SUPPRESS, help="folder of the family tables (default: families)"
+    )
     common.add_argument("--out", metavar="DIR", default=argparse.SUPPRESS, help="folder for results (default: build)")
     common.add_argument("-q", "--quiet", action="store_true", default=argparse.SUPPRESS, help="say nothing but errors")
     parser = argparse.ArgumentParser(
@@ -85,9 +87,20 @@ def main(arguments: list[str] | None = None) -> int:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone; nothing to flush to it
         return 1
-    except KeyboardInterrupt:
-        print("stopped; earlier results are as they were", file=sys.stderr)
+    except BaseException as error:
+        if not _is_interrupt(error):
+            raise
+        print("\nstopped; earlier results are as they were", file=sys.stderr)
         return 1
+
+
+def _is_interrupt(error: BaseException | None) -> bool:
+    """True for Ctrl-C, also where an extension module has turned it into an error of its own."""
+    while error is not None:
+        if isinstance(error, KeyboardInterrupt):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 class _Progress:
@@ -179,8 +192,9 @@ def _print_notes(table) -> None:
         if columns["other_weft_thickness_mm"][at] != "":
             print(
                 f"  {name}: two solutions, yarns of {columns['weft_thickness_mm'][at]:.4g} (weft) and "
-                f"{columns['warp_thickness_mm'][at]:.4g} mm (warp), taken, or {columns['other_weft_thickness_mm'][at]:.4g} "
-                f"and {columns['other_warp_thickness_mm'][at]:.4g} mm; column thicker = weft or warp chooses"
+                f"{columns['warp_thickness_mm'][at]:.4g} mm (warp), taken, "
+                f"or {columns['other_weft_thickness_mm'][at]:.4g} and {columns['other_warp_thickness_mm'][at]:.4g} mm; "
+                "column thicker = weft or warp chooses"
             )
         for quantity, measured, model in table.comparisons[at]:
             difference = 100 * (model - measured) / measured
@@ -200,7 +214,11 @@ def _cell(settings) -> int:
     if not settings.quiet:
         print(summary(report))
         folder = Path(settings.out) / settings.row
-        for name in (*(f"{settings.row}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")), "solved.csv", "report.json"):
+        for name in (
+            *(f"{settings.row}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")),
+            "solved.csv",
+            "report.json",
+        ):
             print(f"  {folder / name}")
     return 0
 

@@ -272,8 +272,10 @@ def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Pr
         refuse(
             np.array([columns in _ALONE for columns in used], dtype=bool) & (fabric <= least * (1 + _ROUNDING)),
             last,
-            lambda at: f"{fabric[at]:g} is A + b of the same direction again and says nothing of the "
-            f"{_ALONE[used[at]]}; fill {_ALONE[used[at]]}_crimp or {_ALONE[used[at]]}_thickness_mm",
+            lambda at: (
+                f"{fabric[at]:g} is A + b of the same direction again and says nothing of the "
+                f"{_ALONE[used[at]]}; fill {_ALONE[used[at]]}_crimp or {_ALONE[used[at]]}_thickness_mm"
+            ),
         )
         rise = _rises(measured, transitions, closed)
         for direction, A, b, other in (("weft", closed.A1, closed.b1, "warp"), ("warp", closed.A2, closed.b2, "weft")):
@@ -283,14 +285,18 @@ def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Pr
             refuse(
                 ~(edge < b),
                 lambda names, at: f"{other}_crimp" if f"{other}_crimp" in names else names[-1],
-                lambda at: f"the contact rise at the {direction}'s edges, {edge[at]:.4g} mm, "
-                f"is not below the {direction} thickness {b[at]:.4g} mm",
+                lambda at: (
+                    f"the contact rise at the {direction}'s edges, {edge[at]:.4g} mm, "
+                    f"is not below the {direction} thickness {b[at]:.4g} mm"
+                ),
             )
             refuse(
                 ~(edge < room),
                 lambda names, at: "lateral_height_mm",
-                lambda at: f"{measured.lateral[at]:g} is not below the {room[at] + measured.lateral[at] - edge[at]:.4g} mm "
-                f"that the contact rise leaves at the {direction}'s edges",
+                lambda at: (
+                    f"{measured.lateral[at]:g} is not below the {room[at] + measured.lateral[at] - edge[at]:.4g} mm "
+                    f"that the contact rise leaves at the {direction}'s edges"
+                ),
             )
     return found
 
@@ -323,7 +329,9 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
     thickness = {"weft": closed.b1, "warp": closed.b2}
     slope = {d: amplitude[d] / transitions[d].rise for d in DIRECTIONS}
     rise = _rises(measured, transitions, closed)
-    under, over = (np.array([getattr(weave, side) for weave in table.weaves], dtype=float) for side in ("under", "over"))
+    under, over = (
+        np.array([getattr(weave, side) for weave in table.weaves], dtype=float) for side in ("under", "over")
+    )
     columns: dict[str, object] = {
         "name": list(table.names),
         "family": [table.family] * len(table),
@@ -352,7 +360,9 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
             f"{d}_crossed_spacing_mm": t.spacing,
             f"{d}_width_mm": measured.width[d],
             f"{d}_thickness_mm": thickness[d],
-            f"{d}_crimp": np.where(_is_used(used, CLOSING.index(f"{d}_crimp"), measured), _crimp(measured, d), t.crimp(slope[d])),
+            f"{d}_crimp": np.where(
+                _is_used(used, CLOSING.index(f"{d}_crimp"), measured), _crimp(measured, d), t.crimp(slope[d])
+            ),
             f"{d}_slope": slope[d],
             f"{d}_amplitude_mm": amplitude[d],
         }
@@ -362,9 +372,7 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
             columns |= {along_column: x, height_column: z}
         for plateau in PLATEAUX:
             for kind, left, right in (("float", 0, 0), ("edge", 0, 1), ("turn", 1, 1)):
-                q, v0 = free_side(
-                    thickness[d], measured.width[d], left * rise[d], right * rise[d], measured.lateral
-                )
+                q, v0 = free_side(thickness[d], measured.width[d], left * rise[d], right * rise[d], measured.lateral)
                 columns |= {f"{d}_{plateau}_{kind}_q": q, f"{d}_{plateau}_{kind}_v0_mm": v0}
     for d, b in (("weft", other.b1), ("warp", other.b2)):
         columns[f"other_{d}_thickness_mm"] = ["" if not twice else value for twice, value in zip(two, b.tolist())]
@@ -381,7 +389,10 @@ def _crimp(measured: _Measured, direction: str) -> np.ndarray:
 def _is_used(used, column: int, measured: _Measured) -> np.ndarray:
     """Boolean (rows,): the quantity of that number in CLOSING identified the row."""
     return np.array(
-        [column in columns or (balanced and columns == (0,) and column == 1) for columns, balanced in zip(used, measured.balanced)],
+        [
+            column in columns or (balanced and columns == (0,) and column == 1)
+            for columns, balanced in zip(used, measured.balanced)
+        ],
         dtype=bool,
     )
 
@@ -391,6 +402,8 @@ def _comparisons(measured, used, columns) -> tuple[tuple[tuple[str, float, float
     for at, identified in enumerate(used):
         beyond[list(identified), at] = False
     return tuple(
-        tuple((CLOSING[k], float(measured.closing[k, at]), columns[CLOSING[k]][at]) for k in np.flatnonzero(beyond[:, at]))
+        tuple(
+            (CLOSING[k], float(measured.closing[k, at]), columns[CLOSING[k]][at]) for k in np.flatnonzero(beyond[:, at])
+        )
         for at in range(len(used))
     )

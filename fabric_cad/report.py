@@ -28,7 +28,9 @@ def contact_pairing(mesh: Mesh) -> Pairing:
     from scipy.spatial import cKDTree
 
     weft, warp = (
-        np.concatenate([np.unique(q) for name, q in mesh.surfaces_named("contact").items() if name.startswith(direction)])
+        np.concatenate(
+            [np.unique(q) for name, q in mesh.surfaces_named("contact").items() if name.startswith(direction)]
+        )
         for direction in ("weft", "warp")
     )
     paired = 0
@@ -134,9 +136,7 @@ def _identified(name: str, solved: Direction) -> dict:
         "width_mm": solved.width,
         "spacing_mm": solved.crossed_spacing,
         "crimp": solved.crimp,
-        "control_points": {
-            point: list(place) for (point, _, _), place in zip(point_columns(name), solved.points)
-        },
+        "control_points": {point: list(place) for (point, _, _), place in zip(point_columns(name), solved.points)},
     }
 
 
@@ -182,7 +182,9 @@ def summary(report: dict) -> str:
     """A short table of a report for a person."""
     weave, found, mesh = report["weave"], report["identified"], report["mesh"]
     touch, volumes = report["consistency"], report["volumes"]
-    kind = f"{report['family']} {weave['over']}*{weave['under']}" + (f" step {weave['step']}" if report["family"] == "satin" else "")
+    kind = f"{report['family']} {weave['over']}*{weave['under']}" + (
+        f" step {weave['step']}" if report["family"] == "satin" else ""
+    )
     lines = [
         f"{report['row']}: {kind}, {weave['wefts']} wefts x {weave['warps']} warps, "
         f"{report['section']} sections, {report['parameters']} parameters",
@@ -210,7 +212,8 @@ def summary(report: dict) -> str:
             f"({each['difference_percent']:+.2f} %)"
         )
     lines += [
-        f"  contact               gap {touch['max_contact_gap_mm']:.1e} mm, penetration {touch['max_penetration_mm']:.1e} mm, "
+        f"  contact               gap {touch['max_contact_gap_mm']:.1e} mm, "
+        f"penetration {touch['max_penetration_mm']:.1e} mm, "
         f"overlap {touch['overlap_volume_mm3']:.1e} mm3, area {touch['contact_area_mm2']:.4g} mm2",
         f"  yarn volume           {volumes['yarn_mm3']:.5g} mm3, fraction {volumes['yarn_volume_fraction']:.3f}"
         + (f", areal density {volumes['areal_density_g_m2']:.4g} g/m2" if "areal_density_g_m2" in volumes else ""),

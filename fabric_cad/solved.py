@@ -20,7 +20,7 @@ from pathlib import Path
 
 from .errors import InputError, Problem
 from .sections import KINDS
-from .weaves import DIRECTIONS, Weave
+from .weaves import Weave
 
 PLATEAUX = ("low", "high")
 

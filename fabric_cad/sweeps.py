@@ -117,7 +117,12 @@ def trajectory(fabric: SolvedFabric, yarn: Yarn, planes: Sequence[float]) -> Tra
             ),
             _line(here[1], after, inner[1], outer[1]),
         ]
-    return Trajectory(yarn.direction, (yarn.index + 0.5) * fabric.crossed(yarn.direction).crossed_spacing, tuple(planes), tuple(pieces))
+    return Trajectory(
+        yarn.direction,
+        (yarn.index + 0.5) * fabric.crossed(yarn.direction).crossed_spacing,
+        tuple(planes),
+        tuple(pieces),
+    )
 
 
 def _line(start: float, end: float, z_start: float, z_end: float) -> Spline:

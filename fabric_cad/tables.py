@@ -320,7 +320,12 @@ class _TableReader:
         if self.separator != ",":
             text = text.replace(",", ".")
         elif re.fullmatch(r"[+-]?\d+,\d+", text):
-            self.wrong(f"{text} has a decimal comma in a comma-separated file; write {text.replace(',', '.')}", line, column, name)
+            self.wrong(
+                f"{text} has a decimal comma in a comma-separated file; write {text.replace(',', '.')}",
+                line,
+                column,
+                name,
+            )
             return math.nan
         if not _NUMBER.fullmatch(text) or not math.isfinite(float(text)):
             hint = f"; use the column {column}_percent" if text.endswith("%") and column.endswith("crimp") else ""

@@ -60,7 +60,13 @@ def _plotter(mesh: Mesh, **options):
         skin = pyvista.PolyData.from_regular_faces(mesh.points[used], faces.reshape(-1, 4))
         skin = skin.compute_normals(split_vertices=True, feature_angle=60, cell_normals=False)
         plotter.add_mesh(
-            skin, color=COLOURS[direction], smooth_shading=True, ambient=0.32, diffuse=0.75, specular=0.15, specular_power=20
+            skin,
+            color=COLOURS[direction],
+            smooth_shading=True,
+            ambient=0.32,
+            diffuse=0.75,
+            specular=0.15,
+            specular_power=20,
         )
         edges = skin.extract_feature_edges(
             feature_angle=60, boundary_edges=True, feature_edges=True, manifold_edges=False, non_manifold_edges=False
@@ -98,7 +104,11 @@ def draw_cell(mesh: Mesh, path: str | Path) -> None:
 
 def show_cell(mesh: Mesh, title: str) -> None:
     """Show a cell in a window until it is closed. Raises :class:`OutputError` without a display."""
-    if os.name == "posix" and os.uname().sysname == "Linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    if (
+        os.name == "posix"
+        and os.uname().sysname == "Linux"
+        and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    ):
         raise OutputError("no display to open a window on (DISPLAY is not set); the picture is in the cell's folder")
     plotter = _plotter(mesh, title=title)
     plotter.add_axes()

@@ -68,7 +68,14 @@ def _thickness(rng: np.random.Generator, family: str, row: dict) -> dict:
     return {kind: total * float(rng.uniform(0.35, 0.65))}
 
 
-TWILL32 = {"name": "twill32", "over": 3, "under": 2, "weft_density_per_mm": 0.35, "weft_width_mm": 2.4, "weft_crimp": 0.004}
+TWILL32 = {
+    "name": "twill32",
+    "over": 3,
+    "under": 2,
+    "weft_density_per_mm": 0.35,
+    "weft_width_mm": 2.4,
+    "weft_crimp": 0.004,
+}
 UNBALANCED = {
     "name": "unbalanced",
     "weft_density_per_mm": 0.25,

@@ -6,7 +6,9 @@ import pytest
 from fabric_cad.errors import InputError
 from fabric_cad.tables import MEASURED, read_families, read_family
 
-HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp,warp_density_per_mm,warp_width_mm,warp_crimp,notes"
+HEADER = (
+    "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp,warp_density_per_mm,warp_width_mm,warp_crimp,notes"
+)
 ROW = "t32,3,2,0.35,2.4,0.004,,,,a note"
 
 
@@ -39,7 +41,7 @@ def semicolons(text):
         f"{HEADER}\n{ROW}\n".replace(",", ";"),
         f"{HEADER}\n{ROW}\n".replace(",", "\t"),
         f"sep=;\n{semicolons(HEADER)}\n{semicolons(ROW)}\n",
-        f"# a comment\n\n  \n{HEADER}\n,,,,,,,,,\n# another, with a \" in it\n{ROW}\n\n",
+        f'# a comment\n\n  \n{HEADER}\n,,,,,,,,,\n# another, with a " in it\n{ROW}\n\n',
         f'{HEADER}\n"# quoted by a spreadsheet",,,,,,,,,\n{ROW}\n',
         f"{HEADER}\n{ROW}\n".replace(",", " , "),
         f"{HEADER}\n" + '"t32","3","2","0.35","2.4","0.004","","","","a note"' + "\n",
@@ -105,7 +107,8 @@ def bad(cells: dict) -> str:
         ({"weft_width_mm": "2.9"}, "twill.csv:2: weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row t32)"),
         (
             {"warp_width_mm": "2.5"},
-            "twill.csv:2: warp_density_per_mm: this cell is empty (leave every warp cell empty for a balanced fabric) (row t32)",
+            "twill.csv:2: warp_density_per_mm: this cell is empty "
+            "(leave every warp cell empty for a balanced fabric) (row t32)",
         ),
         ({"over": "0"}, "twill.csv:2: over: 0 is not between 1 and 100 (row t32)"),
         ({"over": "2.5"}, "twill.csv:2: over: '2.5' is not a whole number (row t32)"),

@@ -36,7 +36,8 @@ class Consistency:
 
     ``max_contact_gap`` is the largest distance between the facing sides of two crossing
     yarns, ``max_penetration`` how deep one enters another, ``overlap_volume`` the integral of
-    that depth over the fabric's plane, ``contact_area`` the area in which the distance is at most :data:`TOUCHING`; ``yarn_volumes`` has one entry a yarn.
+    that depth over the fabric's plane, ``contact_area`` the area in which the
+    distance is at most :data:`TOUCHING`; ``yarn_volumes`` has one entry a yarn.
     """
 
     max_penetration: float
@@ -132,7 +133,9 @@ def _height_fields(solid: cq.Solid) -> tuple[_HeightField, ...]:
             lines[int(axis)] = tuple(_scaled(knot, knots[0], knots[-1], *ends) for knot in knots)
         if lines[0][0] > lines[0][-1] or lines[1][0] > lines[1][-1]:
             raise BuildError("a yarn's face does not run along the cell's axes")
-        fields.append(_HeightField(surface, bool(swapped), lines[0], lines[1], (poles[..., 2].min(), poles[..., 2].max())))
+        fields.append(
+            _HeightField(surface, bool(swapped), lines[0], lines[1], (poles[..., 2].min(), poles[..., 2].max()))
+        )
     return tuple(fields)
 
 
@@ -159,7 +162,11 @@ def _meeting(first, second, rectangle) -> tuple[float, float, float, float]:
     """(deepest penetration, largest gap, overlap volume, contact area) over a plan rectangle."""
     x0, x1, y0, y1 = rectangle
     facing = [
-        [f for f in fields if f.x[0] <= x0 + _PLAN and f.x[-1] >= x1 - _PLAN and f.y[0] <= y0 + _PLAN and f.y[-1] >= y1 - _PLAN]
+        [
+            f
+            for f in fields
+            if f.x[0] <= x0 + _PLAN and f.x[-1] >= x1 - _PLAN and f.y[0] <= y0 + _PLAN and f.y[-1] >= y1 - _PLAN
+        ]
         for fields in (first, second)
     ]
     if any(len(fields) != 2 for fields in facing):

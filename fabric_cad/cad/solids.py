@@ -16,6 +16,7 @@ from ..sweeps import Patch, Skin, Spline, Trajectory, skin
 
 _SEWING_TOLERANCE = 1e-7  # mm, OCCT's confusion; the edges sewn agree to rounding
 
+
 def sweep(path: Trajectory, sections: tuple[Section, ...]) -> cq.Solid:
     """One valid solid: the control sections swept along a trajectory, exactly.
 

@@ -67,9 +67,7 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
     plans = [_plan(fabric, yarn, options) for yarn in yarns_of(fabric.weave.interlacement())]
     if missing := [plan.yarn.name for plan in plans if plan.yarn.name not in solids]:
         raise BuildError(f"{step}: holds no solid named {', '.join(missing)}")
-    faces = {
-        plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name], fabric) for plan in plans
-    }
+    faces = {plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name], fabric) for plan in plans}
     for plan in plans:
         _set_transfinite(gmsh, plan, faces[plan.yarn.name])
     gmsh.option.setNumber("Mesh.MeshOnlyVisible", 1)
@@ -203,7 +201,7 @@ def _space(gmsh, plan: _Plan, faces: dict) -> None:
 def _fill(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
     """Add the inner nodes, the hexahedra, and the quadrilaterals of both end sections."""
     tags, places = _outline(gmsh, plan, faces)
-    template, layers = plan.template, len(tags)
+    template = plan.template
     inner = np.einsum("io,roc->ric", template.weights, places)
     first = int(gmsh.model.mesh.getMaxNodeTag()) + 1
     inner_tags = np.arange(first, first + inner.shape[0] * inner.shape[1]).reshape(inner.shape[:2])
@@ -257,9 +255,7 @@ def _slots(plan: _Plan) -> dict[str, np.ndarray]:
 def _name(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
     name = plan.yarn.name
     gmsh.model.addPhysicalGroup(3, [solid], name=name)
-    contact = [
-        faces[3 * k + 1, "bottom" if high else "top"] for k, high in enumerate(plan.yarn.high)
-    ]
+    contact = [faces[3 * k + 1, "bottom" if high else "top"] for k, high in enumerate(plan.yarn.high)]
     ends = {faces["start"], faces["end"]}
     free = [face for face in faces.values() if face not in ends and face not in set(contact)]
     for kind, tags in (

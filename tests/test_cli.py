@@ -1,0 +1,266 @@
+"""The command as people and scripts use it: what it prints, its exit status, what it leaves behind."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from fabric_cad import staging
+from fabric_cad.cli import main, shipped_families
+from fabric_cad.errors import BuildError, OutputError
+
+HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp"
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """A folder with the shipped tables, as the current one."""
+    shutil.copytree(shipped_families(), tmp_path / "families")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*arguments, **options):
+    return subprocess.run(
+        [sys.executable, "-m", "fabric_cad", *arguments], capture_output=True, text=True, timeout=120, **options
+    )
+
+
+def test_list_shows_every_row_with_its_model(here, capsys):
+    assert main(["list"]) == 0
+    shown = capsys.readouterr().out.splitlines()
+    rows = {line.split()[0]: line for line in shown[1:]}
+    for name in ("plain", "twill21", "twill22", "twill31", "twill32", "twill43", "satin5", "satin8"):
+        assert "3 parameters" in rows[name]
+    assert "7 parameters" in rows["plain_unbalanced"]
+    assert "satin 8 step 3" in rows["satin8"] and "twill 3*2" in rows["twill32"]
+
+
+def test_solve_writes_every_table(here, capsys):
+    from fabric_cad.solved import read_solved
+
+    assert main(["solve", "--out", "results"]) == 0
+    assert "plain_unbalanced: two solutions" in capsys.readouterr().out
+    assert sorted(p.name for p in (here / "results" / "families").iterdir()) == ["plain.csv", "satin.csv", "twill.csv"]
+    fabric = read_solved("results/families/twill.csv", "twill32")
+    assert fabric.weft.amplitude == pytest.approx(0.354794, abs=1e-6)
+
+
+def test_a_wrong_table_is_not_solved_and_the_others_are(here, capsys):
+    main(["solve", "-q"])
+    before = Path("build/families/twill.csv").read_text()
+    Path("families/twill.csv").write_text(f"{HEADER}\nbad,3,2,0.35,2.9,0.004\n")
+    Path("build/families/plain.csv").unlink()
+    assert main(["solve", "-q"]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err == "families/twill.csv:2: weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row bad)\n"
+    assert Path("build/families/plain.csv").exists()
+    assert Path("build/families/twill.csv").read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["cell", "twill23"], "families: no row is called 'twill23'; did you mean twill"),
+        (["cell", "plain", "--families", "nowhere"], "nowhere: no such folder of family tables; 'fabric-cad init'"),
+        (["cell", "plain", "--through", "3"], "through: 3 is odd"),
+        (["cell", "plain", "--gap", "3"], "gap: 3 is odd"),
+        (["cell", "plain", "--across", "3"], "across: 3 is below 4"),
+        (["cell", "plain", "--size", "-1"], "size: -1 is not above 0"),
+        (["list", "--families", "families/plain.csv"], "families/plain.csv: no such folder"),
+    ],
+)
+def test_bad_requests(here, capsys, arguments, words):
+    assert main([*arguments, "-q"]) == 2
+    printed = capsys.readouterr()
+    assert printed.err.startswith(words) and printed.err.count("\n") == 1
+    assert not Path("build").exists() or not any(Path("build").iterdir())
+
+
+@pytest.mark.parametrize("arguments", [[], ["cell"], ["knit"], ["cell", "plain", "--through", "two"]])
+def test_bad_usage(here, capsys, arguments):
+    with pytest.raises(SystemExit) as stopped:
+        main(arguments)
+    assert stopped.value.code == 2
+    assert "usage: fabric-cad" in capsys.readouterr().err
+
+
+def test_help_is_the_manual(capsys):
+    for arguments in (["--help"], ["cell", "--help"]):
+        with pytest.raises(SystemExit) as stopped:
+            main(arguments)
+        assert stopped.value.code == 0
+        shown = capsys.readouterr().out
+        assert "--families DIR" in shown and "--out DIR" in shown and "exit status" in shown
+
+
+def test_a_row_of_a_sound_table_is_made_beside_a_wrong_one(here, capsys, monkeypatch):
+    Path("families/twill.csv").write_text(f"{HEADER}\nbad,3,2,0.35,2.9,0.004\n")
+    made = []
+    monkeypatch.setattr("fabric_cad.pipeline.make_cell", lambda row, *rest: made.append(row.names) or _report())
+    assert main(["cell", "plain"]) == 0
+    assert made == [("plain",)]
+    assert "note, in a table this row is not of: families/twill.csv:2" in capsys.readouterr().err
+    assert main(["cell", "bad"]) == 2
+
+
+def _report():
+    direction = dict.fromkeys(("crimp", "width_mm", "thickness_mm", "amplitude_mm", "slope"), 0.1)
+    return {
+        "row": "plain",
+        "family": "plain",
+        "section": "lenticular",
+        "parameters": 3,
+        "weave": {"over": 1, "under": 1, "step": 1, "wefts": 2, "warps": 2},
+        "identified": {"weft": direction, "warp": direction},
+        "measured_vs_model": [],
+        "consistency": dict.fromkeys(
+            ("max_penetration_mm", "max_contact_gap_mm", "overlap_volume_mm3", "contact_area_mm2", "thickness_mm"), 0.0
+        ),
+        "volumes": {"yarn_mm3": 1.0, "cell_mm3": 2.0, "yarn_volume_fraction": 0.5},
+        "mesh": dict.fromkeys(
+            (
+                "nodes",
+                "hexahedra",
+                "contact_nodes",
+                "coincident_contact_nodes",
+                "min_scaled_jacobian",
+                "median_scaled_jacobian",
+                "scaled_jacobian_edges_allow",
+            ),
+            1,
+        ),
+        "seconds": {},
+    }
+
+
+def test_cell_prints_a_table_and_paths_and_is_silent_when_asked(here):
+    loud = run("cell", "plain", "--size", "1")
+    assert loud.returncode == 0
+    assert "  mesh  " in loud.stderr and "identify" in loud.stderr  # progress, a line a stage
+    assert loud.stdout.startswith("plain: plain 1*1, 2 wefts x 2 warps")
+    for path in loud.stdout.splitlines()[-7:]:
+        assert Path(path.strip()).is_file()
+    quiet = run("cell", "plain", "--size", "1", "-q")
+    assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
+    report = json.loads(Path("build/plain/report.json").read_text())
+    assert {
+        "row", "family", "weave", "identified", "measured_vs_model", "consistency", "volumes", "mesh", "seconds",
+    } <= set(report)  # fmt: skip
+    assert list(report["identified"]["weft"]["control_points"]) == [f"M1{k}" for k in range(1, 7)]
+    assert list(report["identified"]["warp"]["control_points"]) == [f"M2{k}" for k in range(1, 7)]
+
+
+def test_a_reader_that_leaves_a_pipe_is_no_crash(here):
+    done = subprocess.run(
+        f"'{sys.executable}' -m fabric_cad list | head -n 1", shell=True, capture_output=True, text=True, timeout=60
+    )
+    assert done.stdout.startswith("row") and done.stderr == ""
+
+
+def test_init_keeps_what_is_there(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("families").mkdir()
+    Path("families/plain.csv").write_text("mine")
+    assert main(["init"]) == 0
+    assert "families/plain.csv: kept" in capsys.readouterr().out
+    assert Path("families/plain.csv").read_text() == "mine"
+    assert Path("families/satin.csv").read_text() == (shipped_families() / "satin.csv").read_text()
+
+
+def test_show_without_a_display_says_so(here, monkeypatch, capsys):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("fabric_cad.meshing.mesher.read_mesh", lambda path: None)
+    Path("build/plain").mkdir(parents=True)
+    Path("build/plain/plain.msh").write_text("")
+    assert main(["show", "plain"]) == 1
+    assert "no display" in capsys.readouterr().err
+
+
+@pytest.fixture
+def result(tmp_path):
+    """A result folder with an earlier result and a file of the user's."""
+    target = tmp_path / "build" / "row"
+    target.mkdir(parents=True)
+    (target / "row.step").write_text("earlier")
+    (target / "my notes.txt").write_text("mine")
+    return target
+
+
+def content(folder):
+    return {str(p.relative_to(folder)): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+def test_staged_files_replace_theirs_and_leave_others(result):
+    with staging.staged(result) as aside:
+        (aside / "row.step").write_text("new")
+        (aside / "report.json").write_text("{}")
+        assert (result / "row.step").read_text() == "earlier"
+    assert content(result.parent) == {"row/row.step": "new", "row/report.json": "{}", "row/my notes.txt": "mine"}
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), BuildError("no"), ValueError("x")])
+def test_a_stop_halfway_leaves_the_earlier_result(result, error):
+    before = content(result.parent)
+    with pytest.raises(type(error)), staging.staged(result) as aside:
+        (aside / "row.step").write_text("new")
+        raise error
+    assert content(result.parent) == before
+    assert [p.name for p in result.parent.iterdir()] == ["row"]
+
+
+def test_outputs_in_the_way(tmp_path, result):
+    (tmp_path / "file").write_text("")
+    for target in (tmp_path / "file" / "row", tmp_path / "file"):
+        with pytest.raises(OutputError, match="file"), staging.staged(target):
+            pass
+    (result / "report.json").mkdir()
+    before = content(result)
+    with pytest.raises(OutputError, match="is in the way"), staging.staged(result) as aside:
+        (aside / "row.step").write_text("new")
+        (aside / "report.json").write_text("{}")
+    assert content(result) == before
+
+
+def test_a_full_device_is_told_as_such(result, monkeypatch):
+    monkeypatch.setattr(staging.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(1, 1, 0))
+    for error in (OSError(28, "No space left on device"), BuildError("gmsh: could not write")):
+        with pytest.raises(OutputError, match="no space left on the device"), staging.staged(result):
+            raise error
+
+
+def test_what_killed_runs_left_is_cleared(result):
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    for process in (dead.pid, os.getpid()):
+        (result.parent / f".fabric-cad-{process}-x").mkdir()
+    with staging.staged(result):
+        pass
+    assert sorted(p.name for p in result.parent.iterdir()) == [f".fabric-cad-{os.getpid()}-x", "row"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends a POSIX signal")
+@pytest.mark.parametrize("stage", ["identify", "solids", "mesh"])
+def test_ctrl_c_halfway(here, stage):
+    Path("build/plain").mkdir(parents=True)
+    Path("build/plain/plain.step").write_text("earlier")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "fabric_cad", "cell", "plain"], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    for line in process.stderr:
+        if line.split()[0] == stage:
+            break
+    time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    rest = process.communicate(timeout=60)
+    assert process.returncode == 1 and "stopped; earlier results are as they were" in rest[1]
+    assert rest[0] == "" and "Traceback" not in rest[1]
+    assert content(here / "build") == {"plain/plain.step": "earlier"}
