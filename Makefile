@@ -14,7 +14,7 @@ help: ## show this help
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s%s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 	@echo "e.g.   make cell WEAVE=satin8 OPTIONS='--through 4'"
 
-$(READY): requirements.lock pyproject.toml
+$(READY): requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "fabric-cad needs Python 3.11 or later; name one with PYTHON=..."; exit 1; }
 	@echo "installing the environment into .venv (once, about 2 GB) ..."

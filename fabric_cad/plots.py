@@ -1,0 +1,119 @@
+"""Sections, trajectories and cuts of a solved fabric, as the paper's Fig. 15 to 18 draw them.
+
+Each function draws on Matplotlib axes it is given; lengths mm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import BSpline
+
+from .sections import KINDS, Section, contact_section, free_section
+from .solved import SolvedFabric, point_columns
+from .sweeps import Spline, control_planes, control_sections, trajectory
+from .weaves import DIRECTIONS, Yarn, yarns_of
+
+_POINTS = 41
+_COLOURS = {"weft": "#e0862f", "warp": "#3f74a8"}
+
+
+def sample(spline: Spline, points: int = _POINTS) -> tuple[np.ndarray, np.ndarray]:
+    """Places along a spline and its heights there, each of shape (points,), mm."""
+    t = np.linspace(spline.knots[0], spline.knots[-1], points)
+    return t, BSpline(spline.knots, spline.poles, spline.degree)(t)
+
+
+def section_outline(section: Section, points: int = _POINTS) -> tuple[np.ndarray, np.ndarray]:
+    """The closed outline (v, z) of a section, from its left edge along the bottom and back along the top."""
+    knots = np.repeat([section.v[0], 0.0, section.v[-1]], (3, 1, 3))
+    (v, bottom), (_, top) = (sample(Spline(knots, poles, 2), points) for poles in (section.bottom, section.top))
+    return np.concatenate([v, v[::-1], v[:1]]), np.concatenate([bottom, top[::-1], bottom[:1]])
+
+
+def _yarn(fabric: SolvedFabric, direction: str, number: int) -> Yarn:
+    return next(y for y in yarns_of(fabric.weave.interlacement()) if y.name == f"{direction}_{number}")
+
+
+def plot_trajectory(fabric: SolvedFabric, axes, direction: str = "weft") -> None:
+    """Half a period of a midline with its control points M1 ... M6 (Fig. 16)."""
+    solved = fabric.directions[direction]
+    names = [name for name, *_ in point_columns(direction)]
+    places = np.array(solved.points)
+    (_, _), (x2, z2), (x3, _), (x4, _), (x5, z5), _ = places
+    axes.plot(*places[:2].T, color=_COLOURS[direction])
+    axes.plot(*places[4:].T, color=_COLOURS[direction])
+    sign = np.sign(z5 - z2)
+    p_start, p_end = (solved.p_low, solved.p_high) if sign > 0 else (solved.p_high, solved.p_low)
+    for start, end, vertex, level, p in ((x2, x3, x2, z2, sign * p_start), (x4, x5, x5, z5, -sign * p_end)):
+        x = np.linspace(start, end, _POINTS)
+        axes.plot(x, level + p * (x - vertex) ** 2, color="black")
+    axes.plot(*places[2:4].T, color=_COLOURS[direction], linestyle="--")
+    axes.plot(*places.T, "o", color="black", markersize=4)
+    for name, place in zip(names, places):
+        axes.annotate(name, place, xytext=(0, 6), textcoords="offset points", ha="center")
+    axes.margins(y=0.2)
+    axes.set(xlabel="x mm" if direction == "weft" else "y mm", ylabel="z mm", title=f"trajectory of the {direction}")
+
+
+def plot_sections(fabric: SolvedFabric, axes, direction: str = "weft") -> None:
+    """The control sections of one direction in their envelope rectangle (Fig. 17).
+
+    ``axes`` are four: crossed yarn floats, turns on the right, turns on both sides, and
+    the section between crossings.
+    """
+    solved, crossed = fabric.directions[direction], fabric.crossed(direction)
+    rise = crossed.p_low * (solved.width / 2) ** 2
+    titles = {"float": "contact, flat", "edge": "contact, turn on the right", "turn": "contact, turn on both sides"}
+    for ax, kind in zip(axes, (*KINDS, "free")):
+        if kind == "free":
+            section, title = free_section(solved.thickness, solved.width, fabric.lateral_height), "between crossings"
+        else:
+            free = solved.free_sides["high", kind]
+            left, right = {"float": (0.0, 0.0), "edge": (0.0, rise), "turn": (rise, rise)}[kind]
+            section = contact_section(
+                solved.thickness, solved.width, left, right, free.q, free.v0, fabric.lateral_height, contact_below=True
+            )
+            title = titles[kind]
+        ax.fill(*section_outline(section), color=_COLOURS[direction], alpha=0.5)
+        ax.plot(*section_outline(section), color="black", linewidth=1)
+        half_width, half_height = solved.width / 2, solved.thickness / 2
+        corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * [half_width, half_height]
+        ax.plot(*corners.T, color="grey", linestyle=":", linewidth=1)
+        ax.set(title=title, aspect="equal")
+
+
+def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 1) -> None:
+    """A cut through the cell along the axis of one yarn: its own profile and the sections it crosses (Fig. 15, 18)."""
+    yarn = _yarn(fabric, direction, number)
+    path = trajectory(fabric, yarn, control_planes(fabric, direction))
+    sections = control_sections(fabric, yarn)
+    t, bottom, top = [], [], []
+    for piece, first, second in zip(path.pieces, sections, sections[1:]):
+        x, z = sample(piece)
+        share = (x - x[0]) / (x[-1] - x[0])
+        blend = share**2 * (3 - 2 * share)
+        t.append(x)
+        for profile, side in ((bottom, "bottom"), (top, "top")):
+            start, end = (getattr(section, side)[1:3].mean() for section in (first, second))  # at v = 0
+            profile.append(z + (1 - blend) * start + blend * end)
+    along = np.concatenate(t)
+    axes.fill_between(along, np.concatenate(bottom), np.concatenate(top), color=_COLOURS[direction], alpha=0.6)
+    crossed_direction = DIRECTIONS[1 - DIRECTIONS.index(direction)]
+    crossed = fabric.directions[crossed_direction]
+    for k, high in enumerate(yarn.high):
+        other = _yarn(fabric, crossed_direction, k + 1)
+        section = control_sections(fabric, other)[3 * (number - 1) + 1]
+        v, z = section_outline(section)
+        level = crossed.z_low if high else crossed.z_high
+        axes.fill(
+            (k + 0.5) * fabric.directions[direction].crossed_spacing + v,
+            level + z,
+            color=_COLOURS[crossed_direction],
+            alpha=0.9,
+        )
+    axes.set(
+        xlabel="x mm" if direction == "weft" else "y mm",
+        ylabel="z mm",
+        title=f"cut along {direction} {number}",
+        aspect="equal",
+    )
