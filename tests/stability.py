@@ -24,7 +24,7 @@ TIME_LIMIT = 180.0  # s a fabric
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one fabric: ``consistent``, ``refused``, ``failed`` (with its stage), ``crashed`` or ``too slow``."""
+    """What became of one fabric: consistent, refused, failed (with its stage), crashed or too slow."""
 
     seed: int
     kind: str
