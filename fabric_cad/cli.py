@@ -88,10 +88,23 @@ def main(arguments: list[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone; nothing to flush to it
         return 1
     except BaseException as error:
+        if library := _missing_library(error):
+            print(
+                f"the system lacks the library {library}; the README lists what a bare container lacks", file=sys.stderr
+            )
+            return 1
         if not _is_interrupt(error):
             raise
         print("\nstopped; earlier results are as they were", file=sys.stderr)
         return 1
+
+
+def _missing_library(error: BaseException) -> str | None:
+    """Name of the shared library that an extension module could not load."""
+    text = str(error)
+    if isinstance(error, (ImportError, OSError)) and "cannot open shared object file" in text:
+        return text.split(":")[0]
+    return None
 
 
 def _is_interrupt(error: BaseException | None) -> bool:

@@ -165,6 +165,15 @@ def test_a_reader_that_leaves_a_pipe_is_no_crash(here):
     assert done.stdout.startswith("row") and done.stderr == ""
 
 
+def test_a_missing_system_library_is_named(here, monkeypatch, capsys):
+    def load(*_):
+        raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
+
+    monkeypatch.setattr("fabric_cad.pipeline.make_cell", load)
+    assert main(["cell", "plain"]) == 1
+    assert capsys.readouterr().err.startswith("the system lacks the library libGL.so.1; the README lists")
+
+
 def test_init_keeps_what_is_there(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("families").mkdir()

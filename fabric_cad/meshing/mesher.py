@@ -29,12 +29,8 @@ _PLACE = 1e-6  # mm, by which a face's nodes are told apart
 @contextmanager
 def _session() -> Iterator:
     """gmsh, initialised for as long as the block runs."""
-    try:
-        import gmsh
-    except OSError as error:
-        raise BuildError(
-            f"gmsh cannot be loaded: {error}; it needs the system's OpenGL and X11 libraries (see the README)"
-        ) from error
+    import gmsh
+
     gmsh.initialize(["-nopopup"], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
