@@ -25,9 +25,10 @@ def staged(target: Path) -> Iterator[Path]:
     and the folder is gone. Raises :class:`OutputError` where ``target`` cannot be written.
     """
     with _output_errors(target):
+        for folder in (target, *target.parents):
+            if folder.exists() and not folder.is_dir():
+                raise OutputError(f"{folder}: is in the way, it is not a folder")
         target.parent.mkdir(parents=True, exist_ok=True)
-        if target.exists() and not target.is_dir():
-            raise OutputError(f"{target}: is in the way, it is not a folder")
         _clear_leftovers(target.parent)
         aside = Path(tempfile.mkdtemp(prefix=f"{_LEFTOVER}{os.getpid()}-", dir=target.parent))
     try:
@@ -56,19 +57,19 @@ def _output_errors(target: Path) -> Iterator[None]:
     try:
         yield
     except (FabricCadError, OSError) as error:
-        if _is_full(target):
+        if _is_full(target, error):
             raise OutputError(f"{target}: no space left on the device") from error
         if isinstance(error, FabricCadError):
             raise
-        raise OutputError(f"{error.filename or target}: cannot be written: {error.strerror or error}") from error
+        raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
 
 
-def _is_full(target: Path) -> bool:
-    existing = next((p for p in (target, *target.absolute().parents) if p.is_dir()), None)
-    try:
-        return existing is not None and shutil.disk_usage(existing).free < 1 << 16
-    except OSError as error:
-        return error.errno == errno.ENOSPC
+def _is_full(target: Path, error: Exception) -> bool:
+    """True where an error is one of a full device; libraries do not say so themselves."""
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return True
+    existing = next(folder for folder in (target, *target.absolute().parents) if folder.is_dir())
+    return shutil.disk_usage(existing).free < 1 << 16
 
 
 def _clear_leftovers(folder: Path) -> None:
