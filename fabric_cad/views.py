@@ -39,7 +39,6 @@ def write_vtu(mesh: Mesh, quality: np.ndarray, path: str | Path) -> None:
     grid.cell_data["direction"] = direction[mesh.yarn].astype(np.int8)
     grid.cell_data["fibre_axis"] = mesh.fibre_axes()
     grid.cell_data["scaled_jacobian"] = quality
-    grid.field_data["yarn_names"] = list(mesh.yarns)
     writer = vtkXMLUnstructuredGridWriter()
     writer.SetInputData(grid)
     writer.SetCompressionLevel(1)
