@@ -197,7 +197,7 @@ class _TableReader:
         rows = [row for line, cells in records if (row := self.row(header, line, cells)) is not None]
         self.stop_if_wrong()
         measured = {column: np.array([row[column] for row in rows], dtype=float) for column in MEASURED}
-        family = Family(
+        return Family(
             family=self.family,
             path=str(self.path),
             names=tuple(row["name"] for row in rows),
@@ -209,9 +209,6 @@ class _TableReader:
             sources=tuple(row["source"] for row in rows),
             notes=tuple(row["notes"] for row in rows),
         )
-        self.problems += _geometric_problems(family)
-        self.stop_if_wrong()
-        return family
 
     def records(self):
         """(line number, cells) of every line that holds something, header first."""
@@ -297,9 +294,8 @@ class _TableReader:
             self.wrong(f"{row['section']!r} is none of {', '.join(SECTIONS)}", line, "section", name)
         if row["thicker"] not in ("", *DIRECTIONS):
             self.wrong(f"{row['thicker']!r} is none of {', '.join(DIRECTIONS)}", line, "thicker", name)
-        if len(self.problems) > before:
-            return None
         self.check_weave(row, line, name)
+        self.check_geometry(row, {column for column, text in texts.items() if text}, line, name)
         return row if len(self.problems) == before else None
 
     def check_name(self, name: str, line: int) -> None:
@@ -351,6 +347,8 @@ class _TableReader:
         if self.family != "satin":
             return
         harness, step = row["harness"], row["step"]
+        if not (harness and step):
+            return  # told already
         if harness < 3:
             self.wrong(f"{harness} is not at least 3", line, "harness", name)
         elif step >= harness:
@@ -358,35 +356,28 @@ class _TableReader:
         elif math.gcd(harness, step) != 1:
             self.wrong(f"{step} is not coprime to the harness {harness}", line, "step", name)
 
-
-def _geometric_problems(family: Family) -> list[Problem]:
-    """Bounds between cells of one row that need no model."""
-    problems = []
-    values, balanced = family.measured, family.balanced
-    for at in range(len(family)):
-        wrong = []
-        for direction in ("weft",) if balanced[at] else DIRECTIONS:
+    def check_geometry(self, row: dict, filled: set[str], line: int, name: str) -> None:
+        """Bounds between cells of one row that need no model; ``filled`` names its columns with a text."""
+        filled = {_OTHER_UNITS.get(column, (column, 1.0))[0] for column in filled}
+        balanced = not any(f"warp_{quantity}" in filled for quantity in _PER_DIRECTION)
+        for direction in ("weft",) if balanced else DIRECTIONS:
             for quantity in ("density_per_mm", "width_mm"):
-                column = f"{direction}_{quantity}"
-                if math.isnan(values[column][at]):
+                if f"{direction}_{quantity}" not in filled:
                     hint = " (leave every warp cell empty for a balanced fabric)" if direction == "warp" else ""
-                    wrong.append((column, f"this cell is empty{hint}"))
-            spacing, width = 1 / values[f"{direction}_density_per_mm"][at], values[f"{direction}_width_mm"][at]
+                    self.wrong(f"this cell is empty{hint}", line, f"{direction}_{quantity}", name)
+            width, spacing = row[f"{direction}_width_mm"], 1 / row[f"{direction}_density_per_mm"]
             if width >= spacing:
-                wrong.append(
-                    (f"{direction}_width_mm", f"{width:g} is not below the {direction} spacing {spacing:.4g} mm")
-                )
-        lateral = values["lateral_height_mm"][at]
-        if family.sections[at] == "flat" and math.isnan(lateral):
-            wrong.append(("lateral_height_mm", "this cell is empty; a flat section needs the height of its sides"))
-        if family.sections[at] == "lenticular" and not math.isnan(lateral):
-            wrong.append(("lateral_height_mm", f"{lateral:g} has no meaning for a lenticular section; write flat"))
-        if family.sections[at] == "round":
-            wrong.append(("section", "round sections are not modelled; use lenticular or flat"))
-        wrong += [
-            (column, "contact chords and offsets are not modelled; leave this cell empty")
-            for column in _NOT_YET
-            if not math.isnan(values[column][at])
-        ]
-        problems += [family.problem(at, *each) for each in wrong]
-    return problems
+                message = f"{width:g} is not below the {direction} spacing {spacing:.4g} mm"
+                self.wrong(message, line, f"{direction}_width_mm", name)
+        lateral = row["lateral_height_mm"]
+        if row["section"] == "flat" and "lateral_height_mm" not in filled:
+            self.wrong(
+                "this cell is empty; a flat section needs the height of its sides", line, "lateral_height_mm", name
+            )
+        if row["section"] in ("", "lenticular") and not math.isnan(lateral):
+            message = f"{lateral:g} has no meaning for a lenticular section; write flat"
+            self.wrong(message, line, "lateral_height_mm", name)
+        if row["section"] == "round":
+            self.wrong("round sections are not modelled; use lenticular or flat", line, "section", name)
+        for column in sorted(_NOT_YET & filled):
+            self.wrong("contact chords and offsets are not modelled; leave this cell empty", line, column, name)

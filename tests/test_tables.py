@@ -134,10 +134,10 @@ def test_the_message_of_the_manual(tmp_path):
 
 
 def test_everything_wrong_in_a_table_is_listed(tmp_path):
-    text = f"{HEADER}\nt32,3,2,x,y,0.004,,,,\nt32,3,2,0.35,2.4,0.004,,,,\nb,0,2,0.35,2.4,-1,,,,\n"
+    text = f"{HEADER}\nt32,3,2,0.35,2.9,z,,,,\nt32,3,2,0.35,2.4,0.004,,,,\nb,0,2,0.35,2.4,-1,,,,\n"
     assert problems(tmp_path, text) == [
-        "twill.csv:2: weft_density_per_mm: 'x' is not a number (row t32)",
-        "twill.csv:2: weft_width_mm: 'y' is not a number (row t32)",
+        "twill.csv:2: weft_crimp: 'z' is not a number (row t32)",
+        "twill.csv:2: weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row t32)",
         "twill.csv:3: name: this row name is also at line 2 (row t32)",
         "twill.csv:4: over: 0 is not between 1 and 100 (row b)",
         "twill.csv:4: weft_crimp: -1 is not above 0 (row b)",
