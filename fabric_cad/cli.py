@@ -162,7 +162,7 @@ def _list(settings) -> int:
         columns = table.columns
         for at, name in enumerate(columns["name"]):
             weave = measured.weaves[at]
-            kind = f"{weave.over}*{weave.under}" if family != "satin" else f"{weave.repeat} step {weave.step}"
+            kind = f"{weave.over}*{weave.under}" if family != "satin" else f"{weave.warps} step {weave.step}"
             quantities = ["density", "width", *columns["identified_by"][at].split()]
             lines.append(
                 (

@@ -160,12 +160,17 @@ class _Transitions:
 
 
 def _transitions(table: Family, measured: _Measured) -> dict[str, _Transitions]:
-    repeats = np.array([weave.repeat for weave in table.weaves], dtype=float)
     found = {}
     for direction, crossed in (("weft", "warp"), ("warp", "weft")):
         spacing, width = 1 / measured.density[crossed], measured.width[crossed]
-        found[direction] = _Transitions(spacing, repeats / 2 * spacing, width / 2, width / 2, spacing - width)
+        projected = np.sum(_floats(table, direction), axis=0) / 2 * spacing
+        found[direction] = _Transitions(spacing, projected, width / 2, width / 2, spacing - width)
     return found
+
+
+def _floats(table: Family, direction: str) -> np.ndarray:
+    """Mean lengths of the low and the high floats, shape (2, rows), in crossed yarns."""
+    return np.array([weave.floats(direction) for weave in table.weaves], dtype=float).reshape(-1, 2).T
 
 
 def identify(table: Family) -> SolvedTable:
@@ -329,23 +334,21 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
     thickness = {"weft": closed.b1, "warp": closed.b2}
     slope = {d: amplitude[d] / transitions[d].rise for d in DIRECTIONS}
     rise = _rises(measured, transitions, closed)
-    under, over = (
-        np.array([getattr(weave, side) for weave in table.weaves], dtype=float) for side in ("under", "over")
-    )
     columns: dict[str, object] = {
         "name": list(table.names),
         "family": [table.family] * len(table),
         "over": [weave.over for weave in table.weaves],
         "under": [weave.under for weave in table.weaves],
         "step": [weave.step for weave in table.weaves],
+        "pattern": [" ".join(weave.pattern) for weave in table.weaves],
         "section": list(table.sections),
         "lateral_height_mm": measured.lateral,
         "parameters": np.where(measured.balanced, 3, 7),
         "identified_by": [" ".join(CLOSING[k] for k in columns) for columns in used],
         "fabric_thickness_mm": closed.fabric,
     }
-    # the weft starts in the middle of its low float of `under` warps, the warp in that of its
-    # high one, of as many wefts (A.1)-(A.12); frame R of Fig. 15
+    # the weft starts in the middle of its low float, the warp in that of its high one
+    # (A.1)-(A.12); frame R of Fig. 15
     heights = {"weft": (0.0 * closed.A1, closed.A1), "warp": ((closed.A1 + closed.A2) / 2, (closed.A1 - closed.A2) / 2)}
     for d in DIRECTIONS:
         t = transitions[d]
@@ -353,8 +356,10 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
         z_start, z_end = heights[d]
         sign = 1.0 if d == "weft" else -1.0
         p_start, p_end = sign * slope[d] / (2 * u_start), sign * slope[d] / (2 * u_end)
-        leaves, reaches = (under - 1) / 2 * t.spacing, (under + 1) / 2 * t.spacing
-        along = (0.0 * leaves, leaves, leaves + u_start, reaches - u_end, reaches, (over + under) / 2 * t.spacing)
+        low, high = _floats(table, d)
+        start = low if d == "weft" else high
+        leaves, reaches = (start - 1) / 2 * t.spacing, (start + 1) / 2 * t.spacing
+        along = (0.0 * leaves, leaves, leaves + u_start, reaches - u_end, reaches, (low + high) / 2 * t.spacing)
         height = (z_start, z_start, z_start + p_start * u_start**2, z_end - p_end * u_end**2, z_end, z_end)
         columns |= {
             f"{d}_crossed_spacing_mm": t.spacing,

@@ -87,8 +87,8 @@ def cell_report(
             "over": fabric.weave.over,
             "under": fabric.weave.under,
             "step": fabric.weave.step,
-            "wefts": fabric.weave.repeat,
-            "warps": fabric.weave.repeat,
+            "wefts": fabric.weave.wefts,
+            "warps": fabric.weave.warps,
         },
         "section": fabric.section,
         "parameters": int(row["parameters"]),
@@ -151,10 +151,10 @@ def _volumes(fabric: SolvedFabric, consistency, yarn_data: Mapping[str, float | 
         volumes["areal_density_g_m2"] = sum(
             tex[name] * (1 + fabric.directions[name].crimp) / fabric.crossed(name).crossed_spacing for name in tex
         )
-    for name, extent in (("weft", x), ("warp", y)):
+    for name, count, extent in (("weft", fabric.weave.wefts, x), ("warp", fabric.weave.warps, y)):
         if tex[name] and fibre:
             section = tex[name] / fibre * 1e-3  # mm2 of solid fibre
-            length = fabric.weave.repeat * extent * (1 + fabric.directions[name].crimp)
+            length = count * extent * (1 + fabric.directions[name].crimp)
             yarns = sum(v for yarn, v in consistency.yarn_volumes.items() if yarn.startswith(name))
             volumes[f"{name}_fibre_fraction"] = section * length / yarns
     return volumes

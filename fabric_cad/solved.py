@@ -94,8 +94,7 @@ class SolvedFabric:
     @property
     def period(self) -> tuple[float, float]:
         """Extents of the elementary cell along x and y, mm."""
-        repeat = self.weave.repeat
-        return repeat * self.weft.crossed_spacing, repeat * self.warp.crossed_spacing
+        return self.weave.warps * self.weft.crossed_spacing, self.weave.wefts * self.warp.crossed_spacing
 
     @classmethod
     def from_row(cls, row: Mapping[str, object]) -> SolvedFabric:
@@ -126,7 +125,7 @@ class SolvedFabric:
         return cls(
             name=str(row["name"]),
             family=str(row["family"]),
-            weave=Weave(int(row["over"]), int(row["under"]), int(row["step"])),
+            weave=Weave(int(row["over"]), int(row["under"]), int(row["step"]), tuple(str(row["pattern"]).split())),
             section=str(row["section"]),
             lateral_height=float(row["lateral_height_mm"]),
             fabric_thickness=float(row["fabric_thickness_mm"]),

@@ -85,7 +85,7 @@ def control_planes(fabric: SolvedFabric, direction: str) -> tuple[float, ...]:
     a = fabric.directions[direction].crossed_spacing
     c = fabric.crossed(direction).width
     places = [0.0]
-    for k in range(fabric.weave.repeat):
+    for k in range(fabric.weave.crossed_by(direction)):
         places += [(k + 0.5) * a - c / 2, (k + 0.5) * a + c / 2, (k + 1) * a]
     return tuple(places)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import gcd
 
 import numpy as np
@@ -15,32 +16,78 @@ DIRECTIONS = ("weft", "warp")
 
 @dataclass(frozen=True)
 class Weave:
-    """A twill-like weave: every weft passes over ``over`` warps, then under ``under``.
+    """A two-direction weave: a regular one by its floats, any other by its pattern.
 
-    Each weft repeats the one before it ``step`` warps further on, so that the elementary
-    cell holds ``over + under`` yarns of either direction. Plain is 1*1, a twill m*n has
-    step 1, a satin of N harnesses is 1*(N-1) with a step coprime to N (paper, section 1.1).
+    Regular: every weft passes over ``over`` warps, then under ``under``, and repeats the
+    weft before it ``step`` warps further on; the elementary cell holds ``over + under``
+    yarns of either direction. Plain is 1*1, a twill m*n has step 1, a satin of N harnesses
+    is 1*(N-1) with a step coprime to N (paper, section 1.1).
+
+    ``pattern`` has one text a weft, of ``1`` where it passes over the warp and ``0`` where
+    under; ``over``, ``under`` and ``step`` then mean nothing and are 0. Every yarn must
+    change sides somewhere. Raises ValueError.
     """
 
-    over: int
-    under: int
+    over: int = 0
+    under: int = 0
     step: int = 1
+    pattern: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if self.pattern:
+            _check_pattern(self.pattern)
+            return
         if self.over < 1 or self.under < 1:
             raise ValueError(f"a yarn passes over and under at least one yarn, got {self.over}*{self.under}")
-        if gcd(self.step, self.repeat) != 1:
-            raise ValueError(f"step {self.step} is not coprime to {self.repeat}")
+        if gcd(self.step, self.over + self.under) != 1:
+            raise ValueError(f"step {self.step} is not coprime to {self.over + self.under}")
 
     @property
-    def repeat(self) -> int:
-        """Yarns of either direction in the elementary cell."""
-        return self.over + self.under
+    def wefts(self) -> int:
+        """Wefts in the elementary cell."""
+        return len(self.pattern) or self.over + self.under
+
+    @property
+    def warps(self) -> int:
+        """Warps in the elementary cell."""
+        return len(self.pattern[0]) if self.pattern else self.over + self.under
+
+    def crossed_by(self, direction: str) -> int:
+        """Yarns that one weft, or one warp, crosses in the cell."""
+        return self.warps if direction == "weft" else self.wefts
 
     def interlacement(self) -> np.ndarray:
         """Boolean matrix, shape (wefts, warps): True where the weft passes over the warp."""
-        wefts, warps = np.ogrid[: self.repeat, : self.repeat]
-        return (warps - self.step * wefts) % self.repeat < self.over
+        if self.pattern:
+            return np.array([[mark == "1" for mark in row] for row in self.pattern])
+        wefts, warps = np.ogrid[: self.wefts, : self.warps]
+        return (warps - self.step * wefts) % self.warps < self.over
+
+    def floats(self, direction: str) -> tuple[float, float]:
+        """Mean length of a direction's low and of its high floats, in crossed yarns."""
+        if not self.pattern:
+            return (self.under, self.over) if direction == "weft" else (self.over, self.under)
+        return _mean_floats(self, direction)
+
+
+def _check_pattern(pattern: tuple[str, ...]) -> None:
+    if len({len(row) for row in pattern}) != 1 or not pattern[0]:
+        raise ValueError("the rows of a pattern are not equally long")
+    if strange := set("".join(pattern)) - {"0", "1"}:
+        raise ValueError(f"a pattern is of 0 and 1, not {', '.join(sorted(strange))}")
+    for name, yarns in (("weft", pattern), ("warp", list(zip(*pattern)))):
+        for number, yarn in enumerate(yarns, start=1):
+            if len(set(yarn)) == 1:
+                side = "over" if (yarn[0] == "1") == (name == "weft") else "under"
+                raise ValueError(f"{name} {number} passes {side} every yarn and never interlaces")
+
+
+@lru_cache(maxsize=1024)
+def _mean_floats(weave: Weave, direction: str) -> tuple[float, float]:
+    yarns = yarns_of(weave.interlacement())
+    high = np.array([yarn.high for yarn in yarns if yarn.direction == direction])
+    floats = np.count_nonzero(high & ~np.roll(high, 1, axis=1))  # high floats; as many low ones
+    return float(np.count_nonzero(~high) / floats), float(np.count_nonzero(high) / floats)
 
 
 def weave_of(family: str, numbers: dict[str, int]) -> Weave:

@@ -60,7 +60,7 @@ def test_yarns_touch_and_do_not_penetrate(made):
     assert found["overlap_volume_mm3"] <= 1e-9
     assert found["thickness_mm"] == pytest.approx(made.fabric.fabric_thickness, rel=1e-9)
     # every crossing is in contact over the whole width of both yarns
-    plan = made.fabric.weft.width * made.fabric.warp.width * made.fabric.weave.repeat**2
+    plan = made.fabric.weft.width * made.fabric.warp.width * made.fabric.weave.wefts * made.fabric.weave.warps
     assert plan < found["contact_area_mm2"] < plan * (1 + made.fabric.weft.slope**2 + made.fabric.warp.slope**2)
 
 
@@ -112,7 +112,7 @@ def test_step_has_names_colours_and_common_tangents(made):
     for _, name, _, colour in assembly:
         names.append(name.split("/")[-1])
         colours[names[-1].split("_")[0]].add(tuple(round(c, 3) for c in colour.toTuple()[:3]))
-    count = range(1, made.fabric.weave.repeat + 1)
+    count = range(1, made.fabric.weave.wefts + 1)
     assert names == [f"weft_{k}" for k in count] + [f"warp_{k}" for k in count]
     assert len(colours["weft"]) == len(colours["warp"]) == 1 and colours["weft"] != colours["warp"]
 
@@ -139,7 +139,7 @@ def test_step_has_names_colours_and_common_tangents(made):
             one, other = (normal(face, curve.Value(u)) for face in faces)
             assert np.degrees(np.arccos(min(1.0, abs(one @ other)))) < 0.01
             checked += 1
-    assert checked == 3 * 2 * (3 * made.fabric.weave.repeat - 1)
+    assert checked == 3 * 2 * (3 * made.fabric.weave.wefts - 1)
 
 
 def test_step_is_small(twill32):
@@ -176,7 +176,7 @@ def test_mesh_file_by_another_reader(made):
     hexahedra = np.vstack([block.data for block in mesh.cells if block.type == "hexahedron"])
     assert len(hexahedra) == made.report["mesh"]["hexahedra"]
     assert len(mesh.points) == len(np.unique(hexahedra)) == made.report["mesh"]["nodes"]  # no orphan
-    names = {f"{d}_{k}" for d in ("weft", "warp") for k in range(1, made.fabric.weave.repeat + 1)}
+    names = {f"{d}_{k}" for d in ("weft", "warp") for k in range(1, made.fabric.weave.wefts + 1)}
     kinds = ("contact", "free", "start", "end")
     assert set(mesh.field_data) == names | {f"{name}_{kind}" for name in names for kind in kinds}
     assert all(dimension == (3 if name in names else 2) for name, (_, dimension) in mesh.field_data.items())

@@ -61,7 +61,7 @@ def test_the_relations_of_the_paper_hold(seed):
         # (A.27)-(A.29)
         assert d.amplitude == pytest.approx(d.slope * (other.width / 2 + gap), rel=1e-12)
         # (A.11), (A.12)
-        projected = fabric.weave.repeat / 2 * d.crossed_spacing
+        projected = fabric.weave.wefts / 2 * d.crossed_spacing
         assert excess_length(d.slope, other.width, gap) == pytest.approx(d.crimp * projected, rel=1e-11)
 
 
@@ -78,7 +78,7 @@ def test_control_points_lie_on_the_conics(seed):
         slope = (z4 - z3) / (x4 - x3)
         assert 2 * p1 * (x3 - x2) == pytest.approx(slope, rel=1e-9)  # (11)
         assert 2 * p2 * (x5 - x4) == pytest.approx(slope, rel=1e-9)  # (12)
-        assert x6 == pytest.approx(fabric.weave.repeat / 2 * d.crossed_spacing)  # (A.1), (A.2)
+        assert x6 == pytest.approx(fabric.weave.wefts / 2 * d.crossed_spacing)  # (A.1), (A.2)
     # where the warp is on top the midlines are (b1 + b2)/2 apart, and where the weft is: (13), (14)
     apart = (fabric.weft.thickness + fabric.warp.thickness) / 2
     assert fabric.warp.z_high - fabric.weft.z_low == pytest.approx(apart, rel=1e-12)

@@ -50,7 +50,7 @@ def test_contact_faces_coincide(seed):
     over = fabric.weave.interlacement()
     scale = fabric.fabric_thickness
     rng = np.random.default_rng(seed)
-    for i, j in rng.integers(0, fabric.weave.repeat, (6, 2)):
+    for i, j in rng.integers(0, fabric.weave.wefts, (6, 2)):
         (_, weft), (_, warp) = yarns[f"weft_{i + 1}"], yarns[f"warp_{j + 1}"]
         x = warp.axis + np.linspace(-0.5, 0.5, 9) * fabric.warp.width
         y = weft.axis + np.linspace(-0.5, 0.5, 9) * fabric.weft.width
@@ -64,7 +64,7 @@ def test_contact_faces_coincide(seed):
 @settings(max_examples=25, deadline=None)
 def test_neighbouring_faces_have_common_points_and_tangents(seed):
     fabric = fabric_of(seed)
-    for name in ("weft_1", f"warp_{fabric.weave.repeat}"):
+    for name in ("weft_1", f"warp_{fabric.weave.wefts}"):
         yarn, surface = skins(fabric)[name]
         width = fabric.directions[yarn.direction].width
         v = np.linspace(-width / 2, width / 2, 11)
@@ -82,7 +82,7 @@ def test_neighbouring_faces_have_common_points_and_tangents(seed):
 @settings(max_examples=25, deadline=None)
 def test_sections_fill_their_envelope_and_nothing_else(seed):
     fabric = fabric_of(seed)
-    for yarn in yarns_of(fabric.weave.interlacement())[:: fabric.weave.repeat]:
+    for yarn in yarns_of(fabric.weave.interlacement())[:: fabric.weave.wefts]:
         solved = fabric.directions[yarn.direction]
         v = np.linspace(-solved.width / 2, solved.width / 2, 2001)
         knots = np.repeat([-solved.width / 2, 0, solved.width / 2], (3, 1, 3))
@@ -130,7 +130,7 @@ def test_the_trajectory_passes_the_control_points():
 @pytest.mark.parametrize("weave", [Weave(1, 1), Weave(3, 2), Weave(1, 7, 3), Weave(1, 4, 2)])
 def test_interlacement(weave):
     over = weave.interlacement()
-    assert over.shape == (weave.repeat, weave.repeat)
+    assert over.shape == (weave.wefts, weave.warps)
     assert (over.sum(axis=1) == weave.over).all() and (over.sum(axis=0) == weave.over).all()
     for yarn in yarns_of(over):
         changes = sum(a != b for a, b in zip(yarn.high, yarn.high[1:] + yarn.high[:1]))
