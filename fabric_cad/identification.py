@@ -20,7 +20,7 @@ import numpy as np
 
 from .errors import InputError, Problem
 from .lengths import excess_length, slope_from_crimp
-from .sections import free_side
+from .sections import free_parabola, lateral_arc, round_between, round_free_side
 from .solved import PLATEAUX, SolvedTable, point_columns
 from .tables import Family
 from .weaves import DIRECTIONS
@@ -102,6 +102,9 @@ _RULES: dict[tuple[int, ...], _Rule] = {
 }
 
 
+CONTACT_SIDE = {"high": "bottom", "low": "top"}
+"""The side of a yarn that touches at each plateau."""
+
 _BOUNDED = ((0, 1, 4), (2, 3, 4), (0, 2, 4), (1, 3, 4))
 """Sets in which the sum of the first two is the least fabric thickness there is."""
 
@@ -118,23 +121,32 @@ class _Measured:
 
     density: dict[str, np.ndarray]
     width: dict[str, np.ndarray]
+    chord: dict[tuple[str, str], np.ndarray]  # by (direction, plateau) of the yarn itself
+    offset: dict[tuple[str, str], np.ndarray]
     closing: np.ndarray  # (5, rows) in the order of CLOSING
     balanced: np.ndarray
     lateral: np.ndarray
+    round: np.ndarray
 
 
 def _measured(table: Family) -> _Measured:
     balanced = table.balanced
     values = table.measured
-    density, width = (
-        {
-            "weft": values[f"weft_{quantity}"],
-            "warp": np.where(balanced, values[f"weft_{quantity}"], values[f"warp_{quantity}"]),
-        }
-        for quantity in ("density_per_mm", "width_mm")
-    )
+
+    def of(quantity: str) -> dict[str, np.ndarray]:
+        weft = values[f"weft_{quantity}"]
+        return {"weft": weft, "warp": np.where(balanced, weft, values[f"warp_{quantity}"])}
+
+    width, chord, offset = of("width_mm"), {}, {}
+    for plateau, side in CONTACT_SIDE.items():
+        for direction in DIRECTIONS:
+            given = of(f"contact_{side}_mm")[direction]
+            chord[direction, plateau] = np.where(np.isnan(given), width[direction], given)
+            offset[direction, plateau] = np.nan_to_num(of(f"offset_{side}_mm")[direction])
     closing = np.array([values[column] for column in CLOSING]).reshape(len(CLOSING), len(table))
-    return _Measured(density, width, closing, balanced, np.nan_to_num(values["lateral_height_mm"]))
+    lateral = np.nan_to_num(values["lateral_height_mm"])
+    rounded = np.array([form == "round" for form in table.sections], dtype=bool)
+    return _Measured(of("density_per_mm"), width, chord, offset, closing, balanced, lateral, rounded)
 
 
 @dataclass(frozen=True)
@@ -162,9 +174,13 @@ class _Transitions:
 def _transitions(table: Family, measured: _Measured) -> dict[str, _Transitions]:
     found = {}
     for direction, crossed in (("weft", "warp"), ("warp", "weft")):
-        spacing, width = 1 / measured.density[crossed], measured.width[crossed]
+        spacing = 1 / measured.density[crossed]
         projected = np.sum(_floats(table, direction), axis=0) / 2 * spacing
-        found[direction] = _Transitions(spacing, projected, width / 2, width / 2, spacing - width)
+        # on its low plateau a yarn touches the bottom of the one it crosses, which is high there
+        half_low, half_high = measured.chord[crossed, "high"] / 2, measured.chord[crossed, "low"] / 2
+        u_low = half_low - measured.offset[crossed, "high"]
+        u_high = half_high - measured.offset[crossed, "low"]
+        found[direction] = _Transitions(spacing, projected, u_low, u_high, spacing - half_low - half_high)
     return found
 
 
@@ -176,8 +192,9 @@ def _floats(table: Family, direction: str) -> np.ndarray:
 def identify(table: Family) -> SolvedTable:
     """Solve every row of a table for the model's parameters.
 
-    Standard model of the paper (sections 3 to 5, appendix A): balanced rows from three
-    parameters, unbalanced ones from seven, or from any other sufficient subset.
+    The paper's model (sections 3 to 5, appendix A): balanced rows from three parameters,
+    unbalanced ones from seven or any other sufficient subset, and with contact chords,
+    contact offsets and round sections the more general ones of 8, 12 and 18.
     Raises :class:`InputError` listing, for every row that is not a fabric, the number that
     makes it so; nothing unconverged is returned.
     """
@@ -282,34 +299,79 @@ def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Pr
                 f"{_ALONE[used[at]]}; fill {_ALONE[used[at]]}_crimp or {_ALONE[used[at]]}_thickness_mm"
             ),
         )
-        rise = _rises(measured, transitions, closed)
+        arcs = _arcs(measured, transitions, closed)
         for direction, A, b, other in (("weft", closed.A1, closed.b1, "warp"), ("warp", closed.A2, closed.b2, "weft")):
             refuse(~(A > 0), last, lambda at: f"leaves the {direction} an amplitude A of {A[at]:.4g} mm, not above 0")
             refuse(~(b > 0), last, lambda at: f"leaves the {direction} a thickness of {b[at]:.4g} mm, not above 0")
-            room, edge = b - measured.lateral, rise[direction]
+            for plateau, side in CONTACT_SIDE.items():
+                edge = arcs[direction, plateau].edge_rise
+                refuse(
+                    ~measured.round & ~(edge < b),
+                    lambda names, at: f"{other}_crimp" if f"{other}_crimp" in names else names[-1],
+                    lambda at: (
+                        f"the contact rise at the {direction}'s edges, {edge[at]:.4g} mm, "
+                        f"is not below the {direction} thickness {b[at]:.4g} mm"
+                    ),
+                )
+                refuse(
+                    ~measured.round & ~(edge + measured.lateral < b),
+                    lambda names, at: "lateral_height_mm",
+                    lambda at: (
+                        f"{measured.lateral[at]:g} is not below the {b[at] - edge[at]:.4g} mm "
+                        f"that the contact rise leaves at the {direction}'s edges"
+                    ),
+                )
+                refuse(
+                    measured.round & ~(arcs[direction, plateau].top < b),
+                    lambda names, at: f"{'weft' if measured.balanced[at] else direction}_contact_{side}_mm",
+                    lambda at: (
+                        f"a chord of {measured.chord[direction, plateau][at]:.4g} mm leaves arcs "
+                        f"{arcs[direction, plateau].top[at]:.4g} mm high, not below the "
+                        f"{direction} thickness {b[at]:.4g} mm"
+                    ),
+                )
+            half = _between_half_chord(measured, direction)
             refuse(
-                ~(edge < b),
-                lambda names, at: f"{other}_crimp" if f"{other}_crimp" in names else names[-1],
+                measured.round & ~(measured.width[direction] / 2 - half < b / 2),
+                lambda names, at: f"{'weft' if measured.balanced[at] else direction}_contact_top_mm",
                 lambda at: (
-                    f"the contact rise at the {direction}'s edges, {edge[at]:.4g} mm, "
-                    f"is not below the {direction} thickness {b[at]:.4g} mm"
-                ),
-            )
-            refuse(
-                ~(edge < room),
-                lambda names, at: "lateral_height_mm",
-                lambda at: (
-                    f"{measured.lateral[at]:g} is not below the {room[at] + measured.lateral[at] - edge[at]:.4g} mm "
-                    f"that the contact rise leaves at the {direction}'s edges"
+                    f"between crossings the arcs would be {measured.width[direction][at] - 2 * half[at]:.4g} mm high, "
+                    f"not below the {direction} thickness {b[at]:.4g} mm"
                 ),
             )
     return found
 
 
-def _rises(measured, transitions, closed) -> dict[str, np.ndarray]:
-    """Rise of each direction's contact profile at its edge where the crossed yarn turns, mm."""
-    slope = {d: A / transitions[d].rise for d, A in zip(DIRECTIONS, (closed.A1, closed.A2))}
-    return {d: slope[crossed] * measured.width[d] / 4 for d, crossed in (("weft", "warp"), ("warp", "weft"))}
+@dataclass(frozen=True)
+class _Arcs:
+    """How a contact profile ends where the crossed yarn turns; arrays of shape (rows,), mm."""
+
+    slope: np.ndarray  # at the end of the chord
+    rise: np.ndarray  # there
+    edge_rise: np.ndarray  # at the section's edge, where the parabola is carried on to it
+    top: np.ndarray  # highest point of a round section's arc above the contact side, for either kind of side
+
+
+def _arcs(measured, transitions, closed) -> dict[tuple[str, str], _Arcs]:
+    """The contact profiles' ends by direction and plateau."""
+    found = {}
+    slopes = {d: A / transitions[d].rise for d, A in zip(DIRECTIONS, (closed.A1, closed.A2))}
+    for d, crossed in (("weft", "warp"), ("warp", "weft")):
+        for plateau in PLATEAUX:
+            half, offset, width = measured.chord[d, plateau] / 2, measured.offset[d, plateau], measured.width[d]
+            p = slopes[crossed] / (2 * (half - offset))
+            rise = p * (half - offset) ** 2
+            tops = []
+            for height, slope in ((rise, slopes[crossed]), (0 * rise, 0 * rise)):
+                radius, centre = lateral_arc(0.0, width, half, height, slope)
+                tops.append(centre + radius)
+            found[d, plateau] = _Arcs(slopes[crossed], rise, p * (width / 2 - offset) ** 2, np.maximum(*tops))
+    return found
+
+
+def _between_half_chord(measured, direction: str) -> np.ndarray:
+    """Where parabolas and arcs of a round section between crossings meet: the mean half chord, mm."""
+    return (measured.chord[direction, "high"] + measured.chord[direction, "low"]) / 4
 
 
 def _choose(table, first, second, wrong_first, wrong_second) -> tuple[np.ndarray, np.ndarray]:
@@ -333,7 +395,7 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
     amplitude = {"weft": closed.A1, "warp": closed.A2}
     thickness = {"weft": closed.b1, "warp": closed.b2}
     slope = {d: amplitude[d] / transitions[d].rise for d in DIRECTIONS}
-    rise = _rises(measured, transitions, closed)
+    arcs = _arcs(measured, transitions, closed)
     columns: dict[str, object] = {
         "name": list(table.names),
         "family": [table.family] * len(table),
@@ -343,7 +405,7 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
         "pattern": [" ".join(weave.pattern) for weave in table.weaves],
         "section": list(table.sections),
         "lateral_height_mm": measured.lateral,
-        "parameters": np.where(measured.balanced, 3, 7),
+        "parameters": _parameters(table, measured),
         "identified_by": [" ".join(CLOSING[k] for k in columns) for columns in used],
         "fabric_thickness_mm": closed.fabric,
     }
@@ -358,7 +420,12 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
         p_start, p_end = sign * slope[d] / (2 * u_start), sign * slope[d] / (2 * u_end)
         low, high = _floats(table, d)
         start = low if d == "weft" else high
-        leaves, reaches = (start - 1) / 2 * t.spacing, (start + 1) / 2 * t.spacing
+        crossed = DIRECTIONS[1 - DIRECTIONS.index(d)]
+        off_start, off_end = (
+            measured.offset[crossed, plateau] for plateau in (("high", "low") if d == "weft" else ("low", "high"))
+        )
+        leaves = (start - 1) / 2 * t.spacing + off_start
+        reaches = (start + 1) / 2 * t.spacing - off_end
         along = (0.0 * leaves, leaves, leaves + u_start, reaches - u_end, reaches, (low + high) / 2 * t.spacing)
         height = (z_start, z_start, z_start + p_start * u_start**2, z_end - p_end * u_end**2, z_end, z_end)
         columns |= {
@@ -375,14 +442,56 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
         columns |= {f"p{number}1": p_start, f"p{number}2": p_end}
         for (_, along_column, height_column), x, z in zip(point_columns(d), along, height):
             columns |= {along_column: x, height_column: z}
-        for plateau in PLATEAUX:
-            for kind, left, right in (("float", 0, 0), ("edge", 0, 1), ("turn", 1, 1)):
-                q, v0 = free_side(thickness[d], measured.width[d], left * rise[d], right * rise[d], measured.lateral)
-                columns |= {f"{d}_{plateau}_{kind}_q": q, f"{d}_{plateau}_{kind}_v0_mm": v0}
+        columns |= _section_columns(measured, arcs, d, thickness[d])
     for d, b in (("weft", other.b1), ("warp", other.b2)):
         columns[f"other_{d}_thickness_mm"] = ["" if not twice else value for twice, value in zip(two, b.tolist())]
     lists = {name: values.tolist() if isinstance(values, np.ndarray) else values for name, values in columns.items()}
     return SolvedTable(lists, _comparisons(measured, used, lists))
+
+
+def _parameters(table: Family, measured: _Measured) -> np.ndarray:
+    """Number of the paper's parameters that a row uses (sections 5.1, 5.2)."""
+
+    def any_given(quantity: str) -> np.ndarray:
+        columns = [f"{d}_{quantity}_{side}_mm" for d in DIRECTIONS for side in ("top", "bottom")]
+        return np.any([~np.isnan(table.measured[column]) for column in columns], axis=0)
+
+    chords, offsets = any_given("contact"), any_given("offset")
+    a_direction = np.select([measured.round, offsets, chords], [9, 6, 4], 0)
+    return np.where(measured.balanced, np.maximum(a_direction, 3), np.where(a_direction, 2 * a_direction, 7))
+
+
+def _section_columns(measured, arcs, d: str, thickness: np.ndarray) -> dict[str, np.ndarray]:
+    """The conics of one direction's sections (Fig. 9, 17)."""
+    columns = {}
+    width, rounded = measured.width[d], measured.round
+    for plateau, opposite in (("low", "high"), ("high", "low")):
+        half, profile = measured.chord[d, plateau] / 2, arcs[d, plateau]
+        columns[f"{d}_{plateau}_chord_mm"] = 2 * half
+        columns[f"{d}_{plateau}_offset_mm"] = measured.offset[d, plateau]
+        for kind, left, right in (("float", 0, 0), ("edge", 0, 1), ("turn", 1, 1)):
+            with np.errstate(invalid="ignore"):
+                q, v0 = free_parabola(
+                    thickness, width, left * profile.edge_rise, right * profile.edge_rise, measured.lateral
+                )
+            ends = [sign * measured.chord[d, opposite] / 2 for sign in (-1, 1)]
+            found = np.array([q, v0, *ends])
+            if rounded.any():
+                some = np.flatnonzero(rounded)
+                sides = [
+                    lateral_arc(
+                        thickness[some], width[some], half[some], k * profile.rise[some], k * profile.slope[some]
+                    )
+                    for k in (left, right)
+                ]
+                found[:, some] = round_free_side(thickness[some], width[some], *sides)
+            for name, values in zip(("q", "v0_mm", "left_mm", "right_mm"), found):
+                columns[f"{d}_{plateau}_{kind}_{name}"] = values
+    half = _between_half_chord(measured, d)
+    pointed = 2 * (thickness - measured.lateral) / width**2
+    columns[f"{d}_between_q"] = np.where(rounded, round_between(thickness, width, half)[0], pointed)
+    columns[f"{d}_between_end_mm"] = np.where(rounded, half, width / 2)
+    return columns
 
 
 def _crimp(measured: _Measured, direction: str) -> np.ndarray:

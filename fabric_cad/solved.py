@@ -7,8 +7,11 @@ Columns, for weft and warp alike (``weft_...``, ``warp_...``), mm and 1/mm:
 ``crimp, slope, amplitude_mm``   e, s, A
 ``M11_x_mm ... M16_z_mm``   control points of the weft, ``M21_y_mm ... M26_z_mm`` of the warp
 ``p11, p12, p21, p22``      parabolas of (1), (2) at the first and second plateau, signed
-``<plateau>_<kind>_q``, ``_v0_mm``  free side of the contact section at the ``low`` or ``high``
-                            plateau, kind ``float``, ``edge`` (turn on the right), ``turn``
+``<plateau>_chord_mm, _offset_mm``  contact chord and d_c of its own contact side at the ``low``
+                            plateau (its top touches) and at the ``high`` one (its bottom)
+``<plateau>_<kind>_q``, ``_v0_mm``, ``_left_mm``, ``_right_mm``  free side of the contact section at
+                            that plateau, kind ``float``, ``edge`` (turn on the right), ``turn``
+``between_q``, ``between_end_mm``   both sides of the section between crossings
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .errors import InputError, Problem
-from .sections import KINDS
+from .sections import KINDS, ContactSide, Frame, FreeSide
 from .weaves import Weave
 
 PLATEAUX = ("low", "high")
@@ -32,20 +35,13 @@ def point_columns(direction: str) -> list[tuple[str, str, str]]:
 
 
 @dataclass(frozen=True)
-class FreeSide:
-    """Free parabola of a contact section: curvature q (1/mm) and vertex v0 (mm)."""
-
-    q: float
-    v0: float
-
-
-@dataclass(frozen=True)
 class Direction:
     """Solved parameters of the wefts or the warps; lengths mm, parabolas 1/mm.
 
     ``points`` are the six control points (along, z) of Fig. 16 in the paper's frame:
     M11 ... M16 start in the middle of the weft's low float, M21 ... M26 in that of the
-    warp's high one. ``p_low``, ``p_high`` are positive. ``free_sides`` maps (plateau, kind).
+    warp's high one. ``p_low``, ``p_high`` are positive. ``contact`` maps the plateau,
+    ``free_sides`` (plateau, kind); ``between`` is the section between crossings.
     """
 
     crossed_spacing: float
@@ -57,7 +53,9 @@ class Direction:
     p_low: float
     p_high: float
     points: tuple[tuple[float, float], ...]
+    contact: Mapping[str, ContactSide]
     free_sides: Mapping[tuple[str, str], FreeSide]
+    between: FreeSide
 
     @property
     def z_low(self) -> float:
@@ -91,6 +89,15 @@ class SolvedFabric:
         """The other direction: that of the yarns which ``direction`` crosses."""
         return self.warp if direction == "weft" else self.weft
 
+    def frame(self, direction: str) -> Frame:
+        """What all sections of a direction share."""
+        solved = self.directions[direction]
+        splits = {
+            side: (solved.contact[plateau].half_chord, solved.contact[plateau].offset)
+            for side, plateau in (("bottom", "high"), ("top", "low"))
+        }
+        return Frame(solved.width, solved.thickness, self.section, self.lateral_height, splits)
+
     @property
     def period(self) -> tuple[float, float]:
         """Extents of the elementary cell along x and y, mm."""
@@ -100,26 +107,37 @@ class SolvedFabric:
     def from_row(cls, row: Mapping[str, object]) -> SolvedFabric:
         """A fabric from one row of a solved table, cells as text or numbers. Raises KeyError, ValueError."""
 
-        def direction(name: str) -> Direction:
-            number = {key: float(row[f"{name}_{key}"]) for key in _SCALARS}
-            first, second = ("p11", "p12") if name == "weft" else ("p22", "p21")
+        def number(column: str) -> float:
+            return float(row[column])
+
+        parabolas = {
+            "weft": {"low": abs(number("p11")), "high": abs(number("p12"))},
+            "warp": {"high": abs(number("p21")), "low": abs(number("p22"))},
+        }
+
+        def direction(name: str, crossed: str) -> Direction:
+            contact = {
+                plateau: ContactSide(
+                    p=parabolas[crossed][other],
+                    offset=number(f"{name}_{plateau}_offset_mm"),
+                    half_chord=number(f"{name}_{plateau}_chord_mm") / 2,
+                )
+                for plateau, other in (("low", "high"), ("high", "low"))
+            }
+            free_sides = {
+                (plateau, kind): FreeSide(*(number(f"{name}_{plateau}_{kind}_{key}") for key in _FREE_SIDE))
+                for plateau in PLATEAUX
+                for kind in KINDS
+            }
+            end = number(f"{name}_between_end_mm")
             return Direction(
-                crossed_spacing=number["crossed_spacing_mm"],
-                width=number["width_mm"],
-                thickness=number["thickness_mm"],
-                crimp=number["crimp"],
-                slope=number["slope"],
-                amplitude=number["amplitude_mm"],
-                p_low=abs(float(row[first])),
-                p_high=abs(float(row[second])),
-                points=tuple((float(row[along]), float(row[height])) for _, along, height in point_columns(name)),
-                free_sides={
-                    (plateau, kind): FreeSide(
-                        float(row[f"{name}_{plateau}_{kind}_q"]), float(row[f"{name}_{plateau}_{kind}_v0_mm"])
-                    )
-                    for plateau in PLATEAUX
-                    for kind in KINDS
-                },
+                **{key.removesuffix("_mm"): number(f"{name}_{key}") for key in _SCALARS},
+                p_low=parabolas[name]["low"],
+                p_high=parabolas[name]["high"],
+                points=tuple((number(along), number(height)) for _, along, height in point_columns(name)),
+                contact=contact,
+                free_sides=free_sides,
+                between=FreeSide(number(f"{name}_between_q"), 0.0, -end, end),
             )
 
         return cls(
@@ -129,11 +147,12 @@ class SolvedFabric:
             section=str(row["section"]),
             lateral_height=float(row["lateral_height_mm"]),
             fabric_thickness=float(row["fabric_thickness_mm"]),
-            weft=direction("weft"),
-            warp=direction("warp"),
+            weft=direction("weft", "warp"),
+            warp=direction("warp", "weft"),
         )
 
 
+_FREE_SIDE = ("q", "v0_mm", "left_mm", "right_mm")
 _SCALARS = ("crossed_spacing_mm", "width_mm", "thickness_mm", "crimp", "slope", "amplitude_mm")
 
 

@@ -1,198 +1,176 @@
 """Trajectories, control planes and the exact skin swept between control sections.
 
-Everything is a polynomial spline, so the skin has closed-form poles and nothing is fitted.
-Between two control planes the section is translated along the trajectory; where the two
-planes' sections differ they blend with the cubic smoothstep 3 t^2 - 2 t^3, whose Bernstein
-coefficients 0, 0, 1, 1 repeat each section's poles twice. The skin is therefore tangent
-continuous across every control plane (model, section 5).
+Everything is a polynomial spline (arcs: rational), so the skin has closed-form poles and
+nothing is fitted. Between two control planes the section is translated along the trajectory;
+where the two planes' sections differ they blend with the cubic smoothstep 3 t^2 - 2 t^3, whose
+Bernstein coefficients 0, 0, 1, 1 repeat each section's poles twice. The skin is therefore
+tangent continuous across every control plane (model, section 5).
 
 ::
 
-    plane   0     1           2     3           4       mid-gap planes: 0, 3, 6, ...
-            |-----|-----------|-----|-----------|----   crossings: 1-2, 4-5, ...
-           gap/2   crossing, c  gap   crossing
+    mid-gap   crossing, width c of the crossed yarn    mid-gap
+       |--------|-----|=================|-----|--------|-------
+        gap / 2        contact chord           gap / 2
+
+The planes at the ends of the contact chord are there where it is shorter than the width.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from .sections import Section, contact_section, free_section
-from .solved import Direction, FreeSide, SolvedFabric
+from .solved import SolvedFabric
+from .splines import Quadratic, Spline, as_cubic, line, quadratic_spline
 from .weaves import Yarn
 
 
-@dataclass(frozen=True, eq=False)
-class Spline:
-    """A polynomial spline z(t): ``knots`` with multiplicities, ``poles``, ``degree``."""
+@dataclass(frozen=True)
+class ControlPlane:
+    """A place along a yarn (mm), and the number of the crossing it belongs to (None: mid-gap)."""
 
-    knots: np.ndarray
-    poles: np.ndarray
-    degree: int
-
-    @property
-    def abscissae(self) -> np.ndarray:
-        """Greville abscissae: the poles of t itself over the same knots."""
-        inner = np.lib.stride_tricks.sliding_window_view(self.knots[1:-1], self.degree)
-        return inner.mean(axis=1)
+    place: float
+    crossing: int | None
 
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """Midline of a yarn over the cell: one spline between every two control planes.
 
-    ``axis`` is the yarn's place across (y of a weft, x of a warp) and ``planes`` the places
-    of the control planes along it, mm.
+    ``axis`` is the yarn's place across (y of a weft, x of a warp), mm.
     """
 
     direction: str
     axis: float
-    planes: tuple[float, ...]
+    planes: tuple[ControlPlane, ...]
     pieces: tuple[Spline, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """One tensor-product polynomial face z(t, v) of a yarn, t along and v across, mm.
+    """One tensor-product face of a yarn between two control planes.
 
-    ``z`` are the poles, shape (len(along), len(across)); ``along`` and ``across`` carry
-    knots, degree and the coordinates' own poles. ``side`` is ``top``, ``bottom``, ``left`` or
-    ``right``; on the last two ``across`` is the constant v and z is linear in a parameter
-    from the lower edge (0) to the upper one (1).
+    ``poles``, shape (along, across, 4), are t along the yarn, v across it, z (mm) and weight;
+    ``along`` and ``across`` are (knots, degree); ``segment`` numbers the pairs of planes.
     """
 
+    segment: int
     side: str
-    along: Spline
-    across: Spline
-    z: np.ndarray
+    along: tuple[np.ndarray, int]
+    across: tuple[np.ndarray, int]
+    poles: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """The closed surface of a yarn: strips of patches, one patch per pair of control planes."""
+    """The closed surface of a yarn, its two end sections excepted."""
 
     direction: str
     axis: float
-    planes: tuple[float, ...]
+    planes: tuple[ControlPlane, ...]
     patches: tuple[Patch, ...]
 
 
-def control_planes(fabric: SolvedFabric, direction: str) -> tuple[float, ...]:
-    """Places of a yarn's control planes along the cell, mm: mid-gap and both sides of each crossing."""
-    a = fabric.directions[direction].crossed_spacing
-    c = fabric.crossed(direction).width
-    places = [0.0]
-    for k in range(fabric.weave.crossed_by(direction)):
-        places += [(k + 0.5) * a - c / 2, (k + 0.5) * a + c / 2, (k + 1) * a]
-    return tuple(places)
+def contact_segment(planes: Sequence[ControlPlane], crossing: int) -> int:
+    """Number of the pair of control planes between which a crossing's contact lies."""
+    numbers = [at for at, plane in enumerate(planes) if plane.crossing == crossing]
+    return numbers[len(numbers) // 2 - 1]
 
 
-def trajectory(fabric: SolvedFabric, yarn: Yarn, planes: Sequence[float]) -> Trajectory:
+def control_planes(fabric: SolvedFabric, yarn: Yarn) -> tuple[ControlPlane, ...]:
+    """A yarn's control planes along the cell (Fig. 12)."""
+    a, crossed = fabric.directions[yarn.direction].crossed_spacing, fabric.crossed(yarn.direction)
+    planes = [ControlPlane(0.0, None)]
+    for k, high in enumerate(yarn.high):
+        half_chord = crossed.contact["low" if high else "high"].half_chord
+        halves = [crossed.width / 2]
+        if half_chord < crossed.width / 2 * (1 - 1e-12):
+            halves.append(half_chord)
+        centre = (k + 0.5) * a
+        planes += [ControlPlane(centre - half, k) for half in halves]
+        planes += [ControlPlane(centre + half, k) for half in reversed(halves)]
+        planes.append(ControlPlane((k + 1) * a, None))
+    return tuple(planes)
+
+
+def contact_patches(fabric: SolvedFabric) -> dict[tuple[str, str], tuple[float, float, float, float]]:
+    """Plan rectangle (x from, x to, y from, y to; mm) in which each weft touches each warp."""
+    found = {}
+    for i, row in enumerate(fabric.weave.interlacement()):
+        for j, over in enumerate(row):
+            x, y = (j + 0.5) * fabric.weft.crossed_spacing, (i + 0.5) * fabric.warp.crossed_spacing
+            half_x = fabric.warp.contact["low" if over else "high"].half_chord
+            half_y = fabric.weft.contact["high" if over else "low"].half_chord
+            found[f"weft_{i + 1}", f"warp_{j + 1}"] = (x - half_x, x + half_x, y - half_y, y + half_y)
+    return found
+
+
+def trajectory(fabric: SolvedFabric, yarn: Yarn, planes: Sequence[ControlPlane]) -> Trajectory:
     """The midline of one yarn between its control planes (Fig. 11, 16).
 
-    Plateaux and half parabolas over the crossings, straight segments over the gaps.
+    Flat on the plateaux, half a parabola over the contact chord where the yarn leaves a
+    float, straight from there.
     """
     solved = fabric.directions[yarn.direction]
-    pieces = []
-    for k, high in enumerate(yarn.high):
-        plateau = solved.z_high if high else solved.z_low
-        p = -solved.p_high if high else solved.p_low
-        before, here, after = planes[3 * k], planes[3 * k + 1 : 3 * k + 3], planes[3 * k + 3]
-        centre = (here[0] + here[1]) / 2
-        turns = yarn.high[k - 1] != high, yarn.high[(k + 1) % len(yarn.high)] != high
-        ends = [p * (side - centre) ** 2 if turn else 0.0 for side, turn in zip(here, turns)]
-        slopes = [2 * p * (side - centre) if turn else 0.0 for side, turn in zip(here, turns)]
-        reach = before - here[0], after - here[1]
-        outer = [plateau + end + slope * length for end, slope, length in zip(ends, slopes, reach)]
-        inner = [plateau + end for end in ends]
-        pieces += [
-            _line(before, here[0], outer[0], inner[0]),
-            Spline(
-                np.array([here[0]] * 3 + [centre] + [here[1]] * 3),
-                np.array([inner[0], plateau, plateau, inner[1]]),
-                2,
-            ),
-            _line(here[1], after, inner[1], outer[1]),
-        ]
-    return Trajectory(
-        yarn.direction,
-        (yarn.index + 0.5) * fabric.crossed(yarn.direction).crossed_spacing,
-        tuple(planes),
-        tuple(pieces),
-    )
-
-
-def _line(start: float, end: float, z_start: float, z_end: float) -> Spline:
-    return Spline(np.array([start, start, end, end]), np.array([z_start, z_end]), 1)
-
-
-def control_sections(fabric: SolvedFabric, yarn: Yarn) -> tuple[Section, ...]:
-    """The section in every control plane of one yarn (Fig. 12): contact, contact, free, ..."""
-    solved = fabric.directions[yarn.direction]
     crossed = fabric.crossed(yarn.direction)
-    between = free_section(solved.thickness, solved.width, fabric.lateral_height)
-    sections = [between]
+    pieces = []
+    for before, after in zip(planes, planes[1:]):
+        k = before.crossing if before.crossing is not None else after.crossing
+        high = yarn.high[k]
+        level, p = (solved.z_high, -solved.p_high) if high else (solved.z_low, solved.p_low)
+        contact = crossed.contact["low" if high else "high"]
+        centre = (k + 0.5) * solved.crossed_spacing
+        sides = []
+        for sign, turns in ((-1, yarn.high[k - 1] != high), (1, yarn.high[(k + 1) % len(yarn.high)] != high)):
+            vertex, reach = centre + sign * contact.offset, contact.half_chord - contact.offset
+            end = centre + sign * contact.half_chord
+            bent = Quadratic(vertex, level, 0.0, p if turns else 0.0)
+            straight = Quadratic(end, bent.polar(end, end), 2 * bent.p * sign * reach)
+            sides.append((bent, straight))
+        if before.place < centre < after.place:
+            (left, _), (right, _) = sides
+            inner, parts = [centre], [left, right]
+            if contact.offset:
+                inner, parts = [left.x0, right.x0], [left, Quadratic(centre, level), right]
+            pieces.append(quadratic_spline([before.place, *inner, after.place], parts))
+        else:
+            straight = sides[0 if after.place < centre else 1][1]
+            ends = before.place, after.place
+            pieces.append(line(*ends, *(straight.polar(x, x) for x in ends)))
+    axis = (yarn.index + 0.5) * crossed.crossed_spacing
+    return Trajectory(yarn.direction, axis, tuple(planes), tuple(pieces))
+
+
+def control_sections(fabric: SolvedFabric, yarn: Yarn, planes: Sequence[ControlPlane]) -> tuple[Section, ...]:
+    """The section in every control plane of one yarn (Fig. 9, 13, 17)."""
+    solved = fabric.directions[yarn.direction]
+    frame = fabric.frame(yarn.direction)
+    between = free_section(frame, solved.between)
+    in_crossings = []
     for high, left, right in zip(yarn.high, yarn.turns_left, yarn.turns_right):
-        free = _free_side(solved, "high" if high else "low", left, right)
-        rise = (crossed.p_low if high else crossed.p_high) * (solved.width / 2) ** 2
-        contact = contact_section(
-            solved.thickness,
-            solved.width,
-            rise * left,
-            rise * right,
-            free.q,
-            free.v0,
-            fabric.lateral_height,
-            contact_below=high,
-        )
-        sections += [contact, contact, between]
-    return tuple(sections)
-
-
-def _free_side(solved: Direction, plateau: str, left: bool, right: bool) -> FreeSide:
-    kind = {0: "float", 1: "edge", 2: "turn"}[left + right]
-    free = solved.free_sides[plateau, kind]
-    return FreeSide(free.q, -free.v0) if left and not right else free
+        plateau = "high" if high else "low"
+        free = solved.free_sides[plateau, {0: "float", 1: "edge", 2: "turn"}[left + right]]
+        if left and not right:
+            free = free.mirrored
+        in_crossings.append(contact_section(frame, solved.contact[plateau], (left, right), free, below=high))
+    return tuple(between if plane.crossing is None else in_crossings[plane.crossing] for plane in planes)
 
 
 def skin(path: Trajectory, sections: Sequence[Section]) -> Skin:
-    """Sweep the control sections along a trajectory: exact tensor-product splines.
-
-    ``sections`` has one entry per control plane, all lenticular or all with flat sides.
-    """
+    """Sweep the control sections, one in each control plane, along a trajectory: exact splines."""
     patches = []
-    for piece, first, second in zip(path.pieces, sections, sections[1:]):
-        for side, across, start, end in _strips(first, second):
-            if start is end or np.array_equal(start, end):
-                along, rows = piece, np.broadcast_to(start, (len(piece.poles), len(start)))
-            else:
-                along, rows = _cubic(piece), np.array([start, start, end, end])
-            patches.append(Patch(side, along, across, along.poles[:, None] + rows))
+    for segment, (piece, first, second) in enumerate(zip(path.pieces, sections, sections[1:])):
+        along = piece if first is second else as_cubic(piece)
+        for side, strip in first.strips.items():
+            other = second.strips[side].poles
+            rows = [strip.poles] * len(along.poles) if first is second else [strip.poles] * 2 + [other] * 2
+            poles = np.empty((len(along.poles), len(other), 4))
+            poles[..., 0] = along.abscissae[:, None]
+            poles[..., 1:] = rows
+            poles[..., 2] += along.poles[:, None]
+            degree = 1 if len(other) == 2 else 2
+            patches.append(Patch(segment, side, (along.knots, along.degree), (strip.knots, degree), poles))
     return Skin(path.direction, path.axis, path.planes, tuple(patches))
-
-
-def _strips(first: Section, second: Section) -> Iterator[tuple[str, Spline, np.ndarray, np.ndarray]]:
-    """(side, spline of v, z poles in the first and in the second section) of every strip."""
-    ends = first.v[0], first.v[-1]
-    knots = np.array([ends[0]] * 3 + [0.0] + [ends[1]] * 3)
-    yield "top", Spline(knots, first.v, 2), first.top, second.top
-    yield "bottom", Spline(knots, first.v, 2), first.bottom, second.bottom
-    if not first.pointed:
-        upward = np.array([0.0, 0.0, 1.0, 1.0])
-        for side, at in (("left", 0), ("right", -1)):
-            yield (
-                side,
-                Spline(upward, np.full(2, ends[at]), 1),
-                np.array([first.bottom[at], first.top[at]]),
-                np.array([second.bottom[at], second.top[at]]),
-            )
-
-
-def _cubic(line: Spline) -> Spline:
-    """The same straight piece as a cubic without inner knots."""
-    (start, *_, end), (z_start, z_end) = line.knots, line.poles
-    share = np.array([0, 1 / 3, 2 / 3, 1.0])
-    return Spline(np.array([start] * 4 + [end] * 4), z_start + (z_end - z_start) * share, 3)

@@ -40,7 +40,6 @@ MEASURED = (
 """Columns that hold a measured number, in the unit they are kept in."""
 
 _MAY_BE_ZERO = {name for name in MEASURED if "_offset_" in name}
-_NOT_YET = {name for name in MEASURED if "_offset_" in name or "_contact_" in name}
 
 _OTHER_UNITS = {
     f"{direction}_{written}": (f"{direction}_{kept}", factor)
@@ -374,10 +373,23 @@ class _TableReader:
             self.wrong(
                 "this cell is empty; a flat section needs the height of its sides", line, "lateral_height_mm", name
             )
-        if row["section"] in ("", "lenticular") and not math.isnan(lateral):
-            message = f"{lateral:g} has no meaning for a lenticular section; write flat"
+        if row["section"] != "flat" and not math.isnan(lateral):
+            message = f"{lateral:g} has no meaning for a {row['section'] or 'lenticular'} section; write flat"
             self.wrong(message, line, "lateral_height_mm", name)
-        if row["section"] == "round":
-            self.wrong("round sections are not modelled; use lenticular or flat", line, "section", name)
-        for column in sorted(_NOT_YET & filled):
-            self.wrong("contact chords and offsets are not modelled; leave this cell empty", line, column, name)
+        for direction in ("weft",) if balanced else DIRECTIONS:
+            for side in ("top", "bottom"):
+                self.check_contact(row, direction, side, line, name)
+
+    def check_contact(self, row: dict, direction: str, side: str, line: int, name: str) -> None:
+        """Bounds of a contact chord c_t, c_b and offset d_c."""
+        column, width = f"{direction}_contact_{side}_mm", row[f"{direction}_width_mm"]
+        chord = width if math.isnan(row[column]) else row[column]
+        if chord > width:
+            self.wrong(f"{chord:g} is above the {direction} width {width:g} mm", line, column, name)
+        elif row["section"] == "round" and chord == width:
+            message = f"a round section needs a contact chord below its width {width:g} mm"
+            self.wrong(message, line, column, name)
+        offset = row[f"{direction}_offset_{side}_mm"]
+        if offset >= chord / 2:
+            message = f"{offset:g} is not below half the contact chord, {chord / 2:g} mm"
+            self.wrong(message, line, f"{direction}_offset_{side}_mm", name)

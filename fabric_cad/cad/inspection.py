@@ -1,22 +1,23 @@
 """What a cell's solids really do, measured on the B-spline faces of the STEP file.
 
-Seen from above, a yarn's top and bottom faces are height fields z(x, y) over axis-parallel
-rectangles (checked, not assumed). Two yarns can therefore meet only where their rectangles
-overlap, and there the difference of two heights is a polynomial between knot lines:
-Gauss-Lobatto points with more nodes than its degree see all of it.
+Seen from above, the faces of a yarn in a crossing are height fields z(x, y) over axis-parallel
+rectangles (checked, not assumed). Two yarns can meet only where their rectangles overlap.
+Between knot lines the difference of two polynomial faces is a polynomial, and Gauss-Lobatto
+points with more nodes than its degree see all of it; round lateral zones are sampled at the
+same points.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import combinations
 
 import cadquery as cq
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.Geom import Geom_BSplineSurface
-from OCP.gp import gp_Pnt, gp_Vec
+from scipy.interpolate import BSpline
 from scipy.optimize import minimize
 
 from ..errors import BuildError
@@ -24,7 +25,10 @@ from ..errors import BuildError
 TOUCHING = 1e-9
 """Distance (mm) up to which two faces count as in contact."""
 
-_PLAN = 1e-9  # mm, how far a face may be from a height field with straight parameter lines
+Rectangle = tuple[float, float, float, float]
+"""x from, x to, y from, y to, mm."""
+
+_PLAN = 1e-9  # mm, how far a face may be from a height field over a rectangle
 # Gauss-Lobatto on [0, 1], five points: exact to degree 7, ends included
 _NODES = (np.array([-1.0, -np.sqrt(3 / 7), 0.0, np.sqrt(3 / 7), 1.0]) + 1) / 2
 _WEIGHTS = np.array([1 / 20, 49 / 180, 16 / 45, 49 / 180, 1 / 20])
@@ -35,9 +39,9 @@ class Consistency:
     """How a cell's yarns meet; lengths mm, areas mm2, volumes mm3.
 
     ``max_contact_gap`` is the largest distance between the facing sides of two crossing
-    yarns, ``max_penetration`` how deep one enters another, ``overlap_volume`` the integral of
-    that depth over the fabric's plane, ``contact_area`` the area in which the
-    distance is at most :data:`TOUCHING`; ``yarn_volumes`` has one entry a yarn.
+    yarns over their contact patch, ``max_penetration`` how deep one enters another anywhere,
+    ``overlap_volume`` the integral of that depth over the fabric's plane, ``contact_area`` the
+    area in which the distance is at most :data:`TOUCHING`; ``yarn_volumes`` has one entry a yarn.
     """
 
     max_penetration: float
@@ -48,181 +52,247 @@ class Consistency:
     yarn_volumes: dict[str, float]
 
 
-@dataclass(frozen=True)
-class _HeightField:
-    """A B-spline face as z(x, y) over its rectangle."""
+@dataclass(frozen=True, eq=False)
+class _Face:
+    """A B-spline face: knots and degrees along its parameters u, v and homogeneous poles (u, v, 4).
 
-    surface: Geom_BSplineSurface
-    swapped: bool  # u runs along y
-    x: tuple[float, ...]  # knot lines, ends included
-    y: tuple[float, ...]
-    z: tuple[float, float]  # bounds of its poles, and so of the face
+    u runs along the axis ``along`` (0: x, 1: y) of the plan, v across it.
+    """
+
+    knots: tuple[np.ndarray, np.ndarray]
+    degrees: tuple[int, int]
+    poles: np.ndarray
+    along: int
 
     @property
-    def rectangle(self) -> tuple[float, float, float, float]:
-        return self.x[0], self.x[-1], self.y[0], self.y[-1]
+    def corners(self) -> np.ndarray:
+        """The poles as points (u, v, 3)."""
+        return self.poles[..., :3] / self.poles[..., 3:]
 
-    def at(self, x: float, y: float) -> tuple[float, float]:
-        """(z, area of surface per area in plan) at a point of the rectangle."""
-        s, point, du, dv = self.surface, gp_Pnt(), gp_Vec(), gp_Vec()
-        along, across = (y, x) if self.swapped else (x, y)
-        lines_u, lines_v = (self.y, self.x) if self.swapped else (self.x, self.y)
-        u = _scaled(along, lines_u[0], lines_u[-1], s.UKnot(1), s.UKnot(s.NbUKnots()))
-        v = _scaled(across, lines_v[0], lines_v[-1], s.VKnot(1), s.VKnot(s.NbVKnots()))
-        s.D1(u, v, point, du, dv)
-        if abs(point.X() - x) > _PLAN or abs(point.Y() - y) > _PLAN:
-            raise BuildError("a yarn's face is no height field over the fabric's plane")
-        normal = du.Crossed(dv)
-        return point.Z(), normal.Magnitude() / abs(normal.Z())
+    @property
+    def rectangle(self) -> Rectangle:
+        """Plan rectangle of its poles, which holds the face."""
+        low, high = self.corners[..., :2].min(axis=(0, 1)), self.corners[..., :2].max(axis=(0, 1))
+        return low[0], high[0], low[1], high[1]
+
+    def evaluate(self, u: np.ndarray, v: np.ndarray, along: int = 0, across: int = 0) -> np.ndarray:
+        """Homogeneous points, or derivatives of them, on the grid u x v: shape (u, v, 4)."""
+        first = BSpline(self.knots[0], self.poles, self.degrees[0])(u, along)
+        second = BSpline(self.knots[1], first.transpose(1, 0, 2), self.degrees[1])(v, across)
+        return second.transpose(1, 0, 2)
+
+    def parameters(self, along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(u, v) of the grid of places along and across, mm. Raises BuildError where the face is no height field."""
+        (ku, kv), row = self.knots, self.poles[0]
+        places = self.corners[..., self.along]
+        start, end = places[0, 0], places[-1, 0]
+        u = ku[0] + (along - start) / (end - start) * (ku[-1] - ku[0])
+        low, high = np.full(len(across), kv[0]), np.full(len(across), kv[-1])
+        curve = BSpline(kv, row[:, [1 - self.along, 3]], self.degrees[1])
+        v = low + (across - curve(low)[:, 0]) / (curve(high) - curve(low))[:, 0] * (high - low)
+        found = curve(v)
+        if np.max(np.abs(found[:, 0] / found[:, 1] - across)) > _PLAN:  # not linear: bisect
+            for _ in range(60):
+                v = (low + high) / 2
+                found = curve(v)
+                beyond = found[:, 0] / found[:, 1] > across
+                low, high = np.where(beyond, low, v), np.where(beyond, v, high)
+            v = (low + high) / 2
+        return u, v
+
+    def heights(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(z, area of surface per area in plan) on the grid x x y, each of shape (x, y)."""
+        along, across = (x, y) if self.along == 0 else (y, x)
+        u, v = self.parameters(along, across)
+        homogeneous = self.evaluate(u, v)
+        points = homogeneous[..., :3] / homogeneous[..., 3:]
+        expected = np.broadcast_arrays(along[:, None], across[None, :])
+        for axis, places in ((self.along, expected[0]), (1 - self.along, expected[1])):
+            if np.max(np.abs(points[..., axis] - places)) > 10 * _PLAN:
+                raise BuildError("a yarn's face is no height field over the fabric's plane")
+        tangents = []
+        for order in ((1, 0), (0, 1)):
+            rate = self.evaluate(u, v, *order)
+            tangents.append((rate[..., :3] - points * rate[..., 3:]) / homogeneous[..., 3:])
+        normal = np.cross(*tangents)
+        with np.errstate(divide="ignore"):  # vertical at the edge of a round section
+            stretch = np.linalg.norm(normal, axis=-1) / np.abs(normal[..., 2])
+        z = points[..., 2]
+        return (z, stretch) if self.along == 0 else (z.T, stretch.T)
 
 
-def _scaled(value: float, low: float, high: float, to_low: float, to_high: float) -> float:
-    return to_low + (value - low) / (high - low) * (to_high - to_low)
-
-
-def inspect_cell(solids: Mapping[str, cq.Solid]) -> Consistency:
+def inspect_cell(
+    solids: Mapping[str, cq.Solid], patches: Mapping[tuple[str, str], Rectangle] | None = None
+) -> Consistency:
     """Measure the solids of a cell, as read from its STEP file.
 
-    Raises :class:`BuildError` where a yarn is no valid solid, or bounded by faces that are no height fields.
+    ``patches`` gives the plan rectangle in which two yarns should touch; without it they
+    should wherever they lie over each other. Raises :class:`BuildError` where a yarn is no
+    valid solid, or its faces are no height fields in a crossing.
     """
     for name, solid in solids.items():
         if not solid.isValid():
             raise BuildError(f"{name} is not a valid solid")
-    fields = {name: _height_fields(solid) for name, solid in solids.items()}
-    penetration = gap = overlap = area = 0.0
-    for first, second in combinations(solids, 2):
-        for rectangle in _common_rectangles(fields[first], fields[second]):
-            meeting = _meeting(fields[first], fields[second], rectangle)
-            penetration = max(penetration, meeting[0])
-            gap = max(gap, meeting[1])
-            overlap += meeting[2]
-            area += meeting[3]
-    everything = [field for each in fields.values() for field in each]
+    faces = {name: _faces(solid) for name, solid in solids.items()}
+    hulls = {name: _hull([face.rectangle for face in each]) for name, each in faces.items()}
+    found = np.zeros((0, 4))
+    for pair in combinations(solids, 2):
+        common = _intersection(*(hulls[name] for name in pair))
+        if common is not None:
+            patch = common if patches is None else patches.get(pair, common)
+            found = np.vstack([found, _meeting(*(faces[name] for name in pair), common, patch)])
+    everything = [face for each in faces.values() for face in each]
     return Consistency(
-        max_penetration=float(penetration),
-        max_contact_gap=float(gap),
-        overlap_volume=float(overlap),
-        contact_area=float(area),
+        max_penetration=float(found[:, 0].max(initial=0.0)),
+        max_contact_gap=float(found[:, 1].max(initial=0.0)),
+        overlap_volume=float(found[:, 2].sum()),
+        contact_area=float(found[:, 3].sum()),
         thickness=_highest(everything, 1.0) + _highest(everything, -1.0),
         yarn_volumes={name: solid.Volume() for name, solid in solids.items()},
     )
 
 
-def _height_fields(solid: cq.Solid) -> tuple[_HeightField, ...]:
-    """Top and bottom faces of a yarn; its vertical sides and ends are no height fields."""
-    fields = []
+def _faces(solid: cq.Solid) -> tuple[_Face, ...]:
+    """Top and bottom faces of a yarn; its vertical sides and planar ends are left out."""
+    faces = []
     for face in solid.Faces():
         surface = BRep_Tool.Surface_s(face.wrapped)
         if not isinstance(surface, Geom_BSplineSurface):
-            continue  # a planar end
+            continue
         poles = np.array(
             [
-                [surface.Pole(i, j).Coord() for j in range(1, surface.NbVPoles() + 1)]
+                [(*surface.Pole(i, j).Coord(), surface.Weight(i, j)) for j in range(1, surface.NbVPoles() + 1)]
                 for i in range(1, surface.NbUPoles() + 1)
             ]
         )
         if np.ptp(poles[..., 0]) < _PLAN or np.ptp(poles[..., 1]) < _PLAN:
             continue  # a vertical side
-        swapped = np.ptp(poles[:, 0, 1]) > np.ptp(poles[:, 0, 0])
-        lines = {}
-        for axis, knots in (
-            (swapped, [surface.UKnot(i) for i in range(1, surface.NbUKnots() + 1)]),
-            (not swapped, [surface.VKnot(i) for i in range(1, surface.NbVKnots() + 1)]),
+        along = int(np.ptp(poles[:, 0, 1]) > np.ptp(poles[:, 0, 0]))
+        poles[..., :3] *= poles[..., 3:]
+        knots = []
+        for count, knot, times in (
+            (surface.NbUKnots(), surface.UKnot, surface.UMultiplicity),
+            (surface.NbVKnots(), surface.VKnot, surface.VMultiplicity),
         ):
-            ends = poles[0, 0, int(axis)], poles[-1, -1, int(axis)]
-            lines[int(axis)] = tuple(_scaled(knot, knots[0], knots[-1], *ends) for knot in knots)
-        if lines[0][0] > lines[0][-1] or lines[1][0] > lines[1][-1]:
-            raise BuildError("a yarn's face does not run along the cell's axes")
-        fields.append(
-            _HeightField(surface, bool(swapped), lines[0], lines[1], (poles[..., 2].min(), poles[..., 2].max()))
-        )
-    return tuple(fields)
+            knots.append(np.repeat([knot(i + 1) for i in range(count)], [times(i + 1) for i in range(count)]))
+        faces.append(_Face(tuple(knots), (surface.UDegree(), surface.VDegree()), poles, along))
+    return tuple(faces)
 
 
-def _common_rectangles(first, second) -> set[tuple[float, float, float, float]]:
-    """Plan rectangles in which faces of two yarns lie over each other."""
-    boxes = [np.array([field.rectangle for field in fields]) for fields in (first, second)]
-    hulls = [(box[:, 0].min(), box[:, 1].max(), box[:, 2].min(), box[:, 3].max()) for box in boxes]
-    if (shared := _intersection(*hulls)) is None:
-        return set()
-    near = [[field for field in fields if _intersection(field.rectangle, shared)] for fields in (first, second)]
-    common = (_intersection(a.rectangle, b.rectangle) for a, b in product(*near))
-    return {rectangle for rectangle in common if rectangle is not None}
+def _hull(rectangles: list[Rectangle]) -> Rectangle:
+    box = np.array(rectangles)
+    return box[:, 0].min(), box[:, 1].max(), box[:, 2].min(), box[:, 3].max()
 
 
-def _intersection(a, b) -> tuple[float, float, float, float] | None:
-    """Common part of two rectangles (x0, x1, y0, y1), rounded so that equal ones compare equal."""
+def _intersection(a: Rectangle, b: Rectangle) -> Rectangle | None:
     x0, x1, y0, y1 = max(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), min(a[3], b[3])
-    if x1 - x0 <= _PLAN or y1 - y0 <= _PLAN:
-        return None
-    return tuple(round(float(value), 10) for value in (x0, x1, y0, y1))
+    return None if x1 - x0 <= _PLAN or y1 - y0 <= _PLAN else (x0, x1, y0, y1)
 
 
-def _meeting(first, second, rectangle) -> tuple[float, float, float, float]:
-    """(deepest penetration, largest gap, overlap volume, contact area) over a plan rectangle."""
-    x0, x1, y0, y1 = rectangle
-    facing = [
-        [
-            f
-            for f in fields
-            if f.x[0] <= x0 + _PLAN and f.x[-1] >= x1 - _PLAN and f.y[0] <= y0 + _PLAN and f.y[-1] >= y1 - _PLAN
-        ]
-        for fields in (first, second)
-    ]
-    if any(len(fields) != 2 for fields in facing):
-        raise BuildError("a yarn has not one top and one bottom face over a crossing")
-    xs, wx = _rule((x0, x1), [line for fields in facing for field in fields for line in field.x])
-    ys, wy = _rule((y0, y1), [line for fields in facing for field in fields for line in field.y])
-    weights = np.outer(wx, wy)
-    # (yarn, face, x, y, [z, area of surface per area in plan]), faces sorted bottom first
-    found = np.array(
-        [[[[field.at(*_inside(field, x, y)) for y in ys] for x in xs] for field in fields] for fields in facing]
-    )
-    z = np.sort(found[..., 0], axis=1)
-    low, high = z[np.argsort(z.mean(axis=(1, 2, 3)))]
-    distance = high[0] - low[1]
-    stretch = found[0, np.argmin(np.abs(found[0, ..., 0] - low[1]).mean(axis=(1, 2))), ..., 1]
+def _meeting(first, second, common: Rectangle, patch: Rectangle) -> tuple[float, float, float, float]:
+    """(deepest penetration, largest gap over the patch, overlap volume, contact area) of two yarns."""
+    near = [[face for face in faces if _intersection(face.rectangle, common)] for faces in (first, second)]
+    axes = []
+    for axis, ends in ((0, common[:2]), (1, common[2:])):
+        lines = [*patch[2 * axis : 2 * axis + 2]]
+        for face in (*near[0], *near[1]):
+            lines += _knot_lines(face, axis)
+        axes.append(_Grid(_cells(ends, lines)))
+    sheets = [_sheets(faces, *axes) for faces in near]
+    lower, upper = sorted(sheets, key=lambda sheet: (sheet[0] * np.outer(axes[0].weights, axes[1].weights)).sum())
+    weights = np.outer(axes[0].weights, axes[1].weights)
+    roof = lower[0].argmax(axis=0)[None]
+    distance = upper[0].min(axis=0) - lower[0].max(axis=0)
+    stretch = np.take_along_axis(lower[1], roof, axis=0)[0]
+    inside = np.outer(axes[0].within(*patch[:2]), axes[1].within(*patch[2:]))
+    touching = inside & (np.abs(distance) <= TOUCHING)
     return (
         max(0.0, -distance.min()),
-        max(0.0, distance.max()),
+        max(0.0, distance[inside].max()),
         (np.maximum(-distance, 0.0) * weights).sum(),
-        (stretch * weights)[np.abs(distance) <= TOUCHING].sum(),
+        (stretch[touching] * weights[touching]).sum(),
     )
 
 
-def _inside(field: _HeightField, x: float, y: float) -> tuple[float, float]:
-    """A point moved by rounding at most, into the rectangle of a face."""
-    return min(max(x, field.x[0]), field.x[-1]), min(max(y, field.y[0]), field.y[-1])
+class _Grid:
+    """Quadrature points along one axis, cell by cell."""
+
+    def __init__(self, cells: list[tuple[float, float]]) -> None:
+        ends = np.array(cells)
+        spans = ends[:, 1] - ends[:, 0]
+        self.points = (ends[:, :1] + spans[:, None] * _NODES).ravel()
+        self.weights = (spans[:, None] * _WEIGHTS).ravel()
+        self.cells = np.repeat(ends, len(_NODES), axis=0)
+
+    def within(self, low: float, high: float) -> np.ndarray:
+        """True for the points of the cells that lie between two places."""
+        return (self.cells[:, 0] >= low - _PLAN) & (self.cells[:, 1] <= high + _PLAN)
 
 
-def _rule(ends: tuple[float, float], lines: list[float]) -> tuple[list[float], np.ndarray]:
-    """Points and weights of the quadrature between two ends, knot line by knot line."""
-    low, high = ends
-    inner = sorted({round(line, 10) for line in lines if low + _PLAN < line < high - _PLAN})
-    places = np.array([low, *inner, high])
-    spans = np.diff(places)
-    points = places[:-1, None] + spans[:, None] * _NODES
-    return points.ravel().tolist(), (spans[:, None] * _WEIGHTS).ravel()
+def _sheets(faces, x: _Grid, y: _Grid) -> np.ndarray:
+    """Heights and stretches of a yarn's two sheets over a grid: shape (what, sheet, x, y)."""
+    sheets = np.full((2, 2, len(x.points), len(y.points)), np.nan)
+    filled = np.zeros((len(x.points), len(y.points)), dtype=int)
+    for face in faces:
+        x0, x1, y0, y1 = face.rectangle
+        rows, columns = np.flatnonzero(x.within(x0, x1)), np.flatnonzero(y.within(y0, y1))
+        if not (len(rows) and len(columns)):
+            continue
+        at = np.ix_(rows, columns)
+        if filled[at].max() > 1:
+            break
+        places = np.clip(x.points[rows], x0, x1), np.clip(y.points[columns], y0, y1)
+        found = np.array(face.heights(*places))
+        for sheet in (0, 1):
+            here = filled[at] == sheet
+            for what in (0, 1):
+                sheets[what, sheet][at] = np.where(here, found[what], sheets[what, sheet][at])
+        filled[at] += 1
+    if (filled != 2).any():
+        raise BuildError("a yarn has not one top and one bottom face over a crossing")
+    return sheets
 
 
-def _highest(fields: list[_HeightField], sign: float) -> float:
+def _knot_lines(face: _Face, axis: int) -> list[float]:
+    """Plan coordinates of a face's knot lines across one axis."""
+    direction = 0 if axis == face.along else 1
+    knots = face.knots[direction]
+    places = np.unique(knots)
+    row = face.poles[:, 0] if direction == 0 else face.poles[0]
+    curve = BSpline(knots, row[:, [axis, 3]], face.degrees[direction])(places)
+    return (curve[:, 0] / curve[:, 1]).tolist()
+
+
+def _cells(ends: tuple[float, float], lines: list[float]) -> list[tuple[float, float]]:
+    """Intervals between the distinct lines that lie within ``ends``."""
+    places = [ends[0]]
+    for place in sorted(lines):
+        if places[-1] + _PLAN < place < ends[1] - _PLAN:
+            places.append(place)
+    places.append(ends[1])
+    return list(zip(places, places[1:]))
+
+
+def _highest(faces: list[_Face], sign: float) -> float:
     """Largest sign * z over all faces, mm."""
+    bounds = [(sign * face.corners[..., 2]).max() for face in faces]
     best, where = -np.inf, None
-    for field in sorted(fields, key=lambda each: -max(sign * z for z in each.z)):
-        if max(sign * z for z in field.z) <= best:
+    for number in np.argsort(bounds)[::-1]:
+        face = faces[number]
+        if bounds[number] <= best:
             break  # no pole of this face, or of any that follow, is higher
-        x0, x1, y0, y1 = field.rectangle
-        for at in product(np.linspace(x0, x1, 9).tolist(), np.linspace(y0, y1, 9).tolist()):
-            z = sign * field.at(*_inside(field, *at))[0]
-            if z > best:
-                best, where = z, (field, at)
-    field, at = where
-    x0, x1, y0, y1 = field.rectangle
-    refined = minimize(
-        lambda at: -sign * field.at(*_inside(field, *at))[0],
-        at,
-        bounds=((x0, x1), (y0, y1)),
-        method="L-BFGS-B",
-        options={"ftol": 1e-15, "gtol": 1e-12},
-    )
-    return max(best, float(-refined.fun))
+        u, v = (np.linspace(knots[0], knots[-1], 9) for knots in face.knots)
+        points = face.evaluate(u, v)
+        z = sign * points[..., 2] / points[..., 3]
+        i, j = np.unravel_index(z.argmax(), z.shape)
+        if z[i, j] > best:
+            best, where = z[i, j], (face, u[i], v[j])
+    face, *start = where
+
+    def depth(at):
+        point = face.evaluate(at[:1], at[1:])[0, 0]
+        return -sign * point[2] / point[3]
+
+    bounds = [(knots[0], knots[-1]) for knots in face.knots]
+    refined = minimize(depth, start, bounds=bounds, method="L-BFGS-B", options={"ftol": 1e-15, "gtol": 1e-12})
+    return float(max(best, -refined.fun))

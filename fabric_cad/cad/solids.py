@@ -8,11 +8,11 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
 from OCP.Geom import Geom_BSplineSurface
 from OCP.gp import gp_Pnt
 from OCP.TColgp import TColgp_Array2OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
 
 from ..errors import BuildError
 from ..sections import Section
-from ..sweeps import Patch, Skin, Spline, Trajectory, skin
+from ..sweeps import Patch, Skin, Trajectory, skin
 
 _SEWING_TOLERANCE = 1e-7  # mm, OCCT's confusion; the edges sewn agree to rounding
 
@@ -30,7 +30,7 @@ def solid_of(surface: Skin) -> cq.Solid:
     faces = [_face(patch, surface) for patch in surface.patches]
     open_shell = _sew(faces)
     along = "x" if surface.direction == "weft" else "y"
-    ends = [_cap(open_shell, along, place) for place in (surface.planes[0], surface.planes[-1])]
+    ends = [_cap(open_shell, along, place) for place in (surface.planes[0].place, surface.planes[-1].place)]
     shell = _sew([*open_shell.Faces(), *ends])
     solid = cq.Solid.makeSolid(shell) if isinstance(shell, cq.Shell) else None
     if solid is None or not solid.isValid():
@@ -39,27 +39,29 @@ def solid_of(surface: Skin) -> cq.Solid:
 
 
 def _face(patch: Patch, surface: Skin) -> cq.Face:
-    rows, columns = patch.z.shape
-    poles = TColgp_Array2OfPnt(1, rows, 1, columns)
-    along, across = patch.along.abscissae.tolist(), (patch.across.poles + surface.axis).tolist()
+    rows, columns, _ = patch.poles.shape
+    poles, weights = TColgp_Array2OfPnt(1, rows, 1, columns), TColStd_Array2OfReal(1, rows, 1, columns)
     weft = surface.direction == "weft"
-    for i, heights in enumerate(patch.z.tolist()):
-        for j, z in enumerate(heights):
-            t, v = along[i], across[j]
-            poles.SetValue(i + 1, j + 1, gp_Pnt(t, v, z) if weft else gp_Pnt(v, t, z))
-    (u_knots, u_times), (v_knots, v_times) = _knots(patch.along), _knots(patch.across)
-    spline = Geom_BSplineSurface(poles, u_knots, v_knots, u_times, v_times, patch.along.degree, patch.across.degree)
+    for i, row in enumerate(patch.poles.tolist(), start=1):
+        for j, (t, v, z, weight) in enumerate(row, start=1):
+            across = v + surface.axis
+            poles.SetValue(i, j, gp_Pnt(t, across, z) if weft else gp_Pnt(across, t, z))
+            weights.SetValue(i, j, weight)
+    (u_knots, u_times), (v_knots, v_times) = _knots(patch.along[0]), _knots(patch.across[0])
+    knots = u_knots, v_knots, u_times, v_times, patch.along[1], patch.across[1]
+    rational = (patch.poles[..., 3] != 1.0).any()
+    spline = Geom_BSplineSurface(poles, weights, *knots) if rational else Geom_BSplineSurface(poles, *knots)
     return cq.Face(BRepBuilderAPI_MakeFace(spline, _SEWING_TOLERANCE).Face())
 
 
-def _knots(spline: Spline) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
-    distinct, times = np.unique(spline.knots, return_counts=True)
-    knots = TColStd_Array1OfReal(1, len(distinct))
+def _knots(knots: np.ndarray) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
+    distinct, times = np.unique(knots, return_counts=True)
+    values = TColStd_Array1OfReal(1, len(distinct))
     multiplicities = TColStd_Array1OfInteger(1, len(distinct))
     for i, (knot, count) in enumerate(zip(distinct.tolist(), times.tolist()), start=1):
-        knots.SetValue(i, knot)
+        values.SetValue(i, knot)
         multiplicities.SetValue(i, count)
-    return knots, multiplicities
+    return values, multiplicities
 
 
 def _sew(faces: list[cq.Face]) -> cq.Shape:

@@ -20,9 +20,9 @@ def woven(fabric: SolvedFabric, weft_over_warp: np.ndarray) -> Cell:
     """The cell of a fabric; ``weft_over_warp[i, j]`` is True where weft i passes over warp j."""
     yarns = {}
     for yarn in yarns_of(weft_over_warp):
-        planes = control_planes(fabric, yarn.direction)  # where along the yarn
+        planes = control_planes(fabric, yarn)  # where along the yarn
         path = trajectory(fabric, yarn, planes)  # M11 ... M16 or M21 ... M26, over the whole cell
-        sections = control_sections(fabric, yarn)  # one in each control plane
+        sections = control_sections(fabric, yarn, planes)  # one in each of them
         yarns[yarn.name] = sweep(path, sections)
     return assemble(yarns)
 

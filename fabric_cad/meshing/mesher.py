@@ -9,18 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import BuildError
 from ..solved import SolvedFabric
-from ..sweeps import control_planes
-from ..weaves import Yarn, yarns_of
+from ..weaves import yarns_of
 from .mesh import Mesh
 from .options import MeshOptions
-from .templates import Template, flat_template, lenticular_template
+from .plan import Plan, plan_yarn
 
 _HEXAHEDRON, _QUADRILATERAL = 5, 3  # gmsh's element types
 _PLACE = 1e-6  # mm, by which a face's nodes are told apart
@@ -60,10 +58,10 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
     gmsh.option.setNumber("Geometry.OCCBoundsUseStl", 0)
     gmsh.merge(str(step))
     solids = {gmsh.model.getEntityName(3, tag).split("/")[-1]: tag for _, tag in gmsh.model.getEntities(3)}
-    plans = [_plan(fabric, yarn, options) for yarn in yarns_of(fabric.weave.interlacement())]
+    plans = [plan_yarn(fabric, yarn, options) for yarn in yarns_of(fabric.weave.interlacement())]
     if missing := [plan.yarn.name for plan in plans if plan.yarn.name not in solids]:
         raise BuildError(f"{step}: holds no solid named {', '.join(missing)}")
-    faces = {plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name], fabric) for plan in plans}
+    faces = {plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name]) for plan in plans}
     for plan in plans:
         _set_transfinite(gmsh, plan, faces[plan.yarn.name])
     gmsh.option.setNumber("Mesh.MeshOnlyVisible", 1)
@@ -83,74 +81,33 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
     gmsh.write(str(msh))
 
 
-@dataclass(frozen=True, eq=False)
-class _Plan:
-    """What a yarn's mesh will be before there is any."""
+def _classify(gmsh, plan: Plan, solid: int) -> dict:
+    """Faces of a yarn by place: ``start``, ``end`` and (segment, side).
 
-    yarn: Yarn
-    planes: np.ndarray
-    counts: tuple[int, ...]  # elements along, between every two control planes
-    across: int
-    through: int
-    template: Template
-    centre: float  # v of the axis, as a coordinate
-    width: float
-
-    @property
-    def along_axis(self) -> int:
-        return 0 if self.yarn.direction == "weft" else 1
-
-    @property
-    def rows(self) -> np.ndarray:
-        """Number of the layer of nodes in which each control plane lies."""
-        return np.concatenate([[0], np.cumsum(self.counts)])
-
-
-def _plan(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> _Plan:
-    across, crossing = options.across, options.crossing
-    if yarn.direction == "warp":
-        across, crossing = crossing, across
-    make = lenticular_template if fabric.section == "lenticular" else flat_template
-    return _Plan(
-        yarn=yarn,
-        planes=np.array(control_planes(fabric, yarn.direction)),
-        counts=(options.gap // 2, crossing, options.gap // 2) * len(yarn.high),
-        across=across,
-        through=options.through,
-        template=make(across, options.through),
-        centre=(yarn.index + 0.5) * fabric.crossed(yarn.direction).crossed_spacing,
-        width=fabric.directions[yarn.direction].width,
-    )
-
-
-def _classify(gmsh, plan: _Plan, solid: int, fabric: SolvedFabric) -> dict:
-    """Faces of a yarn by place: ``start``, ``end`` and (segment, side)."""
+    A face is told by its middle: which control planes it lies between, and which strip of
+    the model's skin has its middle nearest.
+    """
     faces: dict = {}
-    upright: dict[int, list[tuple[float, int]]] = {}
     for _, face in gmsh.model.getBoundary([(3, solid)], oriented=False):
         low, high = gmsh.model.getParametrizationBounds(2, face)
-        corners = [u for v in (low[1], high[1]) for x in (low[0], high[0]) for u in (x, v)]
-        points = gmsh.model.getValue(2, face, corners).reshape(-1, 3)
+        middle = (low + high) / 2
+        points = gmsh.model.getValue(2, face, [low[0], middle[1], *middle, high[0], middle[1]]).reshape(-1, 3)
         along = points[:, plan.along_axis]
-        across = points[:, 1 - plan.along_axis] - plan.centre
         if np.ptp(along) < _PLACE:
-            faces["start" if along.mean() < plan.planes.mean() else "end"] = face
+            faces["start" if along[0] < plan.places.mean() else "end"] = face
             continue
-        segment = int(np.searchsorted(plan.planes, along.mean())) - 1
-        if np.ptp(across) < _PLACE:
-            faces[segment, "left" if across.mean() < 0 else "right"] = face
-        else:
-            middle = gmsh.model.getValue(2, face, (low + high) / 2)
-            upright.setdefault(segment, []).append((middle[2], face))
-    for segment, both in upright.items():
-        (_, faces[segment, "bottom"]), (_, faces[segment, "top"]) = sorted(both)
-    sides = 2 if fabric.section == "lenticular" else 4
-    if len(faces) != sides * len(plan.counts) + 2:
-        raise BuildError(f"{plan.yarn.name} has {len(faces)} faces, not {sides * len(plan.counts) + 2}")
+        segment = int(np.searchsorted(plan.places, along[1])) - 1
+        sides, middles = plan.middles[segment]
+        across = points[1, 1 - plan.along_axis] - plan.centre
+        distances = np.hypot(middles[:, 0] - across, middles[:, 1] - points[1, 2])
+        faces[segment, sides[int(distances.argmin())]] = face
+    expected = len(plan.strips) * len(plan.counts) + 2
+    if len(faces) != expected:
+        raise BuildError(f"{plan.yarn.name} has {len(faces)} faces that can be told apart, not {expected}")
     return faces
 
 
-def _curves(gmsh, plan: _Plan, faces: dict) -> Iterator[tuple[int, int]]:
+def _curves(gmsh, plan: Plan, faces: dict) -> Iterator[tuple[int, int]]:
     """Every edge of a yarn's skin and the number of elements along it."""
     seen = set()
     for key, face in faces.items():
@@ -165,13 +122,10 @@ def _curves(gmsh, plan: _Plan, faces: dict) -> Iterator[tuple[int, int]]:
                 gmsh.model.getValue(0, point, [])[plan.along_axis]
                 for _, point in gmsh.model.getBoundary([(1, curve)], oriented=False)
             ]
-            if abs(ends[0] - ends[1]) > _PLACE:
-                yield curve, plan.counts[segment]
-            else:
-                yield curve, plan.across if side in ("top", "bottom") else plan.through
+            yield curve, plan.counts[segment] if abs(ends[0] - ends[1]) > _PLACE else len(plan.strips[side]) - 1
 
 
-def _set_transfinite(gmsh, plan: _Plan, faces: dict) -> None:
+def _set_transfinite(gmsh, plan: Plan, faces: dict) -> None:
     for curve, parts in _curves(gmsh, plan, faces):
         gmsh.model.mesh.setTransfiniteCurve(curve, parts + 1)
     for key, face in faces.items():
@@ -180,7 +134,7 @@ def _set_transfinite(gmsh, plan: _Plan, faces: dict) -> None:
             gmsh.model.mesh.setRecombine(2, face)
 
 
-def _space(gmsh, plan: _Plan, faces: dict) -> None:
+def _space(gmsh, plan: Plan, faces: dict) -> None:
     """Space the nodes of every edge equally in its parameter, which runs with x, y or z.
 
     gmsh spaces them by arc length, which differs between the two edges of a yarn.
@@ -194,7 +148,7 @@ def _space(gmsh, plan: _Plan, faces: dict) -> None:
             gmsh.model.mesh.setNode(tag, place, [parameter])
 
 
-def _fill(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
+def _fill(gmsh, plan: Plan, solid: int, faces: dict) -> None:
     """Add the inner nodes, the hexahedra, and the quadrilaterals of both end sections."""
     tags, places = _outline(gmsh, plan, faces)
     template = plan.template
@@ -211,47 +165,30 @@ def _fill(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
     gmsh.model.mesh.addElementsByType(solid, _HEXAHEDRON, [], hexahedra.ravel())
 
 
-def _outline(gmsh, plan: _Plan, faces: dict) -> tuple[np.ndarray, np.ndarray]:
+def _outline(gmsh, plan: Plan, faces: dict) -> tuple[np.ndarray, np.ndarray]:
     """Tags (layers, outline) and places (layers, outline, 3) of the nodes around every layer."""
     layers, outline = plan.rows[-1] + 1, plan.template.outline
     tags = np.zeros((layers, outline), dtype=np.uint64)
     places = np.full((layers, outline, 3), np.nan)
-    slots = _slots(plan)
-    for segment, parts in enumerate(plan.counts):
-        start, end = plan.planes[segment : segment + 2]
-        for side, slot in slots.items():
-            face_tags, coordinates, _ = gmsh.model.mesh.getNodes(2, faces[segment, side], includeBoundary=True)
-            coordinates = coordinates.reshape(-1, 3)
-            row = np.rint((coordinates[:, plan.along_axis] - start) / (end - start) * parts).astype(int)
-            across = coordinates[:, 2 if side in ("left", "right") else 1 - plan.along_axis]
-            order = np.lexsort((across, row))
-            if len(order) != (parts + 1) * len(slot):
-                raise BuildError(f"gmsh did not mesh a face of {plan.yarn.name} transfinitely")
-            rows = plan.rows[segment] + np.arange(parts + 1)
-            tags[np.ix_(rows, slot)] = face_tags[order].reshape(parts + 1, len(slot))
-            places[np.ix_(rows, slot)] = coordinates[order].reshape(parts + 1, len(slot), 3)
+    for (segment, side), face in ((key, face) for key, face in faces.items() if key not in ("start", "end")):
+        slots, parts = plan.strips[side], plan.counts[segment]
+        found, coordinates, parameters = gmsh.model.mesh.getNodes(
+            2, face, includeBoundary=True, returnParametricCoord=True
+        )
+        low, high = gmsh.model.getParametrizationBounds(2, face)
+        share = (parameters.reshape(-1, 2) - low) / (high - low)
+        row, column = np.rint(share * [parts, len(slots) - 1]).astype(int).T
+        if len(found) != (parts + 1) * len(slots) or len(np.unique(row * len(slots) + column)) != len(found):
+            raise BuildError(f"gmsh did not mesh a face of {plan.yarn.name} transfinitely")
+        at = plan.rows[segment] + row, slots[column]
+        tags[at], places[at] = found, coordinates.reshape(-1, 3)
     return tags, places
 
 
-def _slots(plan: _Plan) -> dict[str, np.ndarray]:
-    """Places in a section's outline of each side's nodes, from left to right or upwards."""
-    across, outline = plan.across, plan.template.outline
-    bottom = np.arange(across + 1)
-    if outline == 2 * across:  # pointed edges
-        return {"bottom": bottom, "top": np.arange(outline, across - 1, -1) % outline}
-    through = plan.through
-    return {
-        "bottom": bottom,
-        "right": across + np.arange(through + 1),
-        "top": (across + through + np.arange(across + 1))[::-1],
-        "left": np.arange(outline, outline - through - 1, -1) % outline,
-    }
-
-
-def _name(gmsh, plan: _Plan, solid: int, faces: dict) -> None:
+def _name(gmsh, plan: Plan, solid: int, faces: dict) -> None:
     name = plan.yarn.name
     gmsh.model.addPhysicalGroup(3, [solid], name=name)
-    contact = [faces[3 * k + 1, "bottom" if high else "top"] for k, high in enumerate(plan.yarn.high)]
+    contact = [faces[key] for key in plan.contacts]
     ends = {faces["start"], faces["end"]}
     free = [face for face in faces.values() if face not in ends and face not in set(contact)]
     for kind, tags in (

@@ -35,6 +35,12 @@ class MeshOptions:
 
     def check(self, fabric: SolvedFabric) -> None:
         """Raise :class:`InputError` where the section of a fabric cannot be filled so."""
+        if fabric.section == "round" and (self.through % 2 or self.through < 4):
+            raise InputError(
+                Problem(
+                    f"{self.through} is not an even number of at least 4, as a round section needs", column="through"
+                )
+            )
         if fabric.section != "lenticular":
             return
         if self.through % 2:
@@ -68,8 +74,8 @@ def mesh_options(
     """
     if size is not None and not size > 0:
         raise InputError(Problem(f"{size:g} is not above 0", column="size"))
-    default = MeshOptions()
-    pointed = fabric.section == "lenticular"
+    pointed, rounded = fabric.section == "lenticular", fabric.section == "round"
+    default = MeshOptions(through=4) if rounded else MeshOptions()
     if size is None:
         across = across or max(default.across, 3 * (through or 0) if pointed else 0)
         asked = MeshOptions(across, crossing or across, through or default.through, gap or default.gap)
@@ -77,7 +83,8 @@ def mesh_options(
         thickness = max(fabric.weft.thickness, fabric.warp.thickness)
         if through is None:
             through = ceil(thickness / size)
-            through += through % 2 if pointed else 0
+            through += through % 2 if pointed or rounded else 0
+            through = max(through, 4) if rounded else through
         least = 2 * through if pointed else 2
         spare = [fabric.directions[d].crossed_spacing - fabric.crossed(d).width for d in ("weft", "warp")]
         asked = MeshOptions(

@@ -16,6 +16,9 @@ before the tip T become three patches of k x k quadrilaterals (drawn for k = 1):
                    bottom k      bottom 2k
 
 M is at mid-height in column 2k, G = (T + top 2k + bottom 2k) / 3.
+
+Round sections have no corner, so that a block of four sides would degenerate at the points
+where arcs and parabolas meet: an inner block is surrounded by one ring of quadrilaterals.
 """
 
 from __future__ import annotations
@@ -74,6 +77,45 @@ def lenticular_template(across: int, through: int) -> Template:
     return _template(outline, [core, *left, *(patch[::-1] for patch in right)])
 
 
+_RING = 0.5
+"""Thickness of the ring of a round section, in columns and rows of the inner block."""
+
+
+def round_template(across: int, through: int) -> Template:
+    """An inner block of ``across`` x ``through`` in a ring: through + 2 layers in all."""
+    outline = 2 * (across + through)
+    node = np.eye(outline)
+    bottom = node[: across + 1]
+    right = node[across : across + through + 1]
+    top = node[across + through : 2 * across + through + 1][::-1]
+    left = np.vstack([node[2 * across + through :], node[:1]])[::-1]
+    inset = _RING / (across + 2 * _RING), _RING / (through + 2 * _RING)
+    s, t = (
+        margin + np.linspace(0.0, 1.0, parts + 1) * (1 - 2 * margin) for margin, parts in zip(inset, (across, through))
+    )
+    block = _coons_at(bottom, top, left, right, s, t)
+    ring = [
+        np.stack([bottom, block[:, 0]], axis=1),
+        np.stack([block[:, -1], top], axis=1),
+        np.stack([left, block[0]], axis=0),
+        np.stack([block[-1], right], axis=0),
+    ]
+    return _template(outline, [block, *ring])
+
+
+def _coons_at(bottom, top, left, right, s: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Transfinite patch at the places s x t of the unit square, shape (s, t, outline)."""
+
+    def along(side: np.ndarray, places: np.ndarray) -> np.ndarray:
+        grid = np.linspace(0.0, 1.0, len(side))
+        return np.array([np.interp(places, grid, column) for column in side.T]).T
+
+    lower, upper, west, east = along(bottom, s), along(top, s), along(left, t), along(right, t)
+    s, t = s[:, None, None], t[None, :, None]
+    sides = (1 - t) * lower[:, None] + t * upper[:, None] + (1 - s) * west[None] + s * east[None]
+    return sides - (1 - s) * ((1 - t) * bottom[0] + t * top[0]) - s * ((1 - t) * bottom[-1] + t * top[-1])
+
+
 def _tip(bottom: np.ndarray, top: np.ndarray, k: int) -> list[np.ndarray]:
     """The three patches of a left tip; row 0 of ``bottom`` and of ``top`` is the tip itself."""
     middle = (bottom[2 * k] + top[2 * k]) / 2
@@ -92,11 +134,7 @@ def _straight(start: np.ndarray, end: np.ndarray, parts: int) -> np.ndarray:
 
 def _coons(bottom: np.ndarray, top: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Transfinite patch between four sides, shape (columns + 1, rows + 1, outline)."""
-    s = np.linspace(0.0, 1.0, len(bottom))[:, None, None]
-    t = np.linspace(0.0, 1.0, len(left))[None, :, None]
-    sides = (1 - t) * bottom[:, None] + t * top[:, None] + (1 - s) * left[None] + s * right[None]
-    corners = (1 - s) * ((1 - t) * bottom[0] + t * top[0]) + s * ((1 - t) * bottom[-1] + t * top[-1])
-    patch = sides - corners
+    patch = _coons_at(bottom, top, left, right, np.linspace(0.0, 1.0, len(bottom)), np.linspace(0.0, 1.0, len(left)))
     patch[:, 0], patch[:, -1], patch[0], patch[-1] = bottom, top, left, right
     return patch
 
