@@ -12,26 +12,45 @@ import numpy as np
 
 from .sections import Section
 from .solved import SolvedFabric
-from .sweeps import Spline, control_planes, control_sections, trajectory
+from .splines import Spline
+from .sweeps import control_planes, control_sections, trajectory
 from .weaves import yarns_of
 
 _SAMPLES = 257
 
 
 def allowed_scaled_jacobian(fabric: SolvedFabric) -> float:
-    """Smallest scaled Jacobian of the three tangents over all edge points of the cell."""
+    """Smallest scaled Jacobian of the three tangents over all edge points of the cell.
+
+    1 for round sections, which have no edges.
+    """
     worst = 1.0
+    if fabric.section == "round":
+        return worst
     known: set[bytes] = set()
     for yarn in yarns_of(fabric.weave.interlacement()):
-        path = trajectory(fabric, yarn, control_planes(fabric, yarn.direction))
-        sections = control_sections(fabric, yarn)
+        planes = control_planes(fabric, yarn)
+        path, sections = trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes)
         for piece, first, second in zip(path.pieces, sections, sections[1:]):
-            shape = (piece.poles - piece.poles[0], first.top, first.bottom, second.top, second.bottom)
+            shape = [piece.poles - piece.poles[0], piece.knots - piece.knots[0]]
+            shape += [_edge(section, *place)[:2] for section in (first, second) for place in _PLACES]
             key = b"".join(np.round(each, 12).tobytes() for each in shape)
             if key not in known:
                 known.add(key)
                 worst = min(worst, _worst_of(piece, first, second))
     return worst
+
+
+_PLACES = [(level, end) for end in (0, -1) for level in ("lower", "upper")]
+
+
+def _edge(section: Section, level: str, end: int) -> tuple[float, float]:
+    """Height and slope dz/dv of the lower or upper side at the left (0) or right (-1) edge."""
+    strips = section.strips
+    side = {"lower": "bottom", "upper": "top"}[level]
+    poles = strips.get(f"{'left' if end == 0 else 'right'}_{level}", strips[side]).poles
+    (v, z, _), (v_next, z_next, _) = (poles[0], poles[1]) if end == 0 else (poles[-1], poles[-2])
+    return z, (z_next - z) / (v_next - v)
 
 
 def _worst_of(piece: Spline, first: Section, second: Section) -> float:
@@ -43,12 +62,11 @@ def _worst_of(piece: Spline, first: Section, second: Section) -> float:
     found = []
     for end in (0, -1):
         sides = []
-        for start, stop in ((first.top, second.top), (first.bottom, second.bottom)):
-            edge = slope + (stop[end] - start[end]) * rate
-            across = (1 - blend) * _end_slope(first.v, start, end) + blend * _end_slope(first.v, stop, end)
-            sides.append((edge, across))
+        for level in ("lower", "upper"):
+            (z_start, start), (z_stop, stop) = (_edge(section, level, end) for section in (first, second))
+            sides.append((slope + (z_stop - z_start) * rate, (1 - blend) * start + blend * stop))
         if first.pointed:
-            (edge, top), (_, bottom) = sides
+            (edge, bottom), (_, top) = sides
             found.append(np.abs(top - bottom) / np.sqrt((1 + top**2) * (1 + bottom**2) * (1 + edge**2)))
         else:
             found += [1 / np.sqrt((1 + across**2) * (1 + edge**2)) for edge, across in sides]
@@ -64,9 +82,3 @@ def _slope(piece: Spline, share: np.ndarray) -> np.ndarray:
     if piece.degree == 1:
         return np.full_like(share, slopes[0])
     return np.interp(places[0] + share * (places[-1] - places[0]), places, slopes)
-
-
-def _end_slope(v: np.ndarray, poles: np.ndarray, end: int) -> float:
-    """dz/dv of a section's spline at its left (0) or right (-1) edge."""
-    a, b = (0, 1) if end == 0 else (-2, -1)
-    return (poles[b] - poles[a]) / (v[b] - v[a])

@@ -14,6 +14,7 @@ from .errors import InputError
 from .identification import identify
 from .solved import read_solved
 from .staging import staged
+from .sweeps import contact_patches
 from .tables import Family, read_families
 
 _YARN_DATA = ("weft_linear_density_tex", "warp_linear_density_tex", "fibre_density_g_cm3")
@@ -89,7 +90,7 @@ def make_cell(
         with stages("write STEP"):
             cell.write_step(path["step"])
         with stages("inspect STEP"):
-            consistency = inspect_cell(read_step(path["step"]))
+            consistency = inspect_cell(read_step(path["step"]), contact_patches(fabric))
         with stages("mesh"):
             from .meshing.mesher import mesh_cell, read_mesh
 

@@ -10,11 +10,24 @@ from scipy.interpolate import BSpline
 
 from .sections import KINDS, Section, contact_section, free_section
 from .solved import SolvedFabric, point_columns
-from .sweeps import Spline, control_planes, control_sections, trajectory
+from .splines import Spline
+from .sweeps import control_planes, control_sections, trajectory
 from .weaves import DIRECTIONS, Yarn, yarns_of
 
 _POINTS = 41
 _COLOURS = {"weft": "#e0862f", "warp": "#3f74a8"}
+
+# strips of a section in the order in which they follow each other, and which are run backwards
+_AROUND = (
+    ("left_lower", False),
+    ("bottom", False),
+    ("right_lower", False),
+    ("right", False),
+    ("right_upper", True),
+    ("top", True),
+    ("left_upper", True),
+    ("left", True),
+)
 
 
 def sample(spline: Spline, points: int = _POINTS) -> tuple[np.ndarray, np.ndarray]:
@@ -24,10 +37,19 @@ def sample(spline: Spline, points: int = _POINTS) -> tuple[np.ndarray, np.ndarra
 
 
 def section_outline(section: Section, points: int = _POINTS) -> tuple[np.ndarray, np.ndarray]:
-    """The closed outline (v, z) of a section, from its left edge along the bottom and back along the top."""
-    knots = np.repeat([section.v[0], 0.0, section.v[-1]], (3, 1, 3))
-    (v, bottom), (_, top) = (sample(Spline(knots, poles, 2), points) for poles in (section.bottom, section.top))
-    return np.concatenate([v, v[::-1], v[:1]]), np.concatenate([bottom, top[::-1], bottom[:1]])
+    """The closed outline (v, z) of a section, counter-clockwise from its left edge, mm."""
+    curve = []
+    for side, backwards in _AROUND:
+        if side in section.strips:
+            strip = section.strips[side]
+            weights = strip.poles[:, 2:]
+            degree = 1 if len(strip.poles) == 2 else 2
+            homogeneous = np.hstack([strip.poles[:, :2] * weights, weights])
+            found = BSpline(strip.knots, homogeneous, degree)(np.linspace(0.0, 1.0, points))
+            found = found[:, :2] / found[:, 2:]
+            curve.append(found[::-1] if backwards else found)
+    v, z = np.vstack([*curve, curve[0][:1]]).T
+    return v, z
 
 
 def _yarn(fabric: SolvedFabric, direction: str, number: int) -> Yarn:
@@ -61,18 +83,14 @@ def plot_sections(fabric: SolvedFabric, axes, direction: str = "weft") -> None:
     ``axes`` are four: crossed yarn floats, turns on the right, turns on both sides, and
     the section between crossings.
     """
-    solved, crossed = fabric.directions[direction], fabric.crossed(direction)
-    rise = crossed.p_low * (solved.width / 2) ** 2
+    solved, frame = fabric.directions[direction], fabric.frame(direction)
     titles = {"float": "contact, flat", "edge": "contact, turn on the right", "turn": "contact, turn on both sides"}
     for ax, kind in zip(axes, (*KINDS, "free")):
         if kind == "free":
-            section, title = free_section(solved.thickness, solved.width, fabric.lateral_height), "between crossings"
+            section, title = free_section(frame, solved.between), "between crossings"
         else:
-            free = solved.free_sides["high", kind]
-            left, right = {"float": (0.0, 0.0), "edge": (0.0, rise), "turn": (rise, rise)}[kind]
-            section = contact_section(
-                solved.thickness, solved.width, left, right, free.q, free.v0, fabric.lateral_height, contact_below=True
-            )
+            turns = {"float": (False, False), "edge": (False, True), "turn": (True, True)}[kind]
+            section = contact_section(frame, solved.contact["high"], turns, solved.free_sides["high", kind], below=True)
             title = titles[kind]
         ax.fill(*section_outline(section), color=_COLOURS[direction], alpha=0.5)
         ax.plot(*section_outline(section), color="black", linewidth=1)
@@ -85,8 +103,8 @@ def plot_sections(fabric: SolvedFabric, axes, direction: str = "weft") -> None:
 def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 1) -> None:
     """A cut through the cell along the axis of one yarn: its own profile and the sections it crosses (Fig. 15, 18)."""
     yarn = _yarn(fabric, direction, number)
-    path = trajectory(fabric, yarn, control_planes(fabric, direction))
-    sections = control_sections(fabric, yarn)
+    planes = control_planes(fabric, yarn)
+    path, sections = trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes)
     t, bottom, top = [], [], []
     for piece, first, second in zip(path.pieces, sections, sections[1:]):
         x, z = sample(piece)
@@ -94,7 +112,7 @@ def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 
         blend = share**2 * (3 - 2 * share)
         t.append(x)
         for profile, side in ((bottom, "bottom"), (top, "top")):
-            start, end = (getattr(section, side)[1:3].mean() for section in (first, second))  # at v = 0
+            start, end = (_on_axis(section, side) for section in (first, second))
             profile.append(z + (1 - blend) * start + blend * end)
     along = np.concatenate(t)
     axes.fill_between(along, np.concatenate(bottom), np.concatenate(top), color=_COLOURS[direction], alpha=0.6)
@@ -102,8 +120,9 @@ def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 
     crossed = fabric.directions[crossed_direction]
     for k, high in enumerate(yarn.high):
         other = _yarn(fabric, crossed_direction, k + 1)
-        section = control_sections(fabric, other)[3 * (number - 1) + 1]
-        v, z = section_outline(section)
+        other_planes = control_planes(fabric, other)
+        at = next(n for n, plane in enumerate(other_planes) if plane.crossing == number - 1)
+        v, z = section_outline(control_sections(fabric, other, other_planes)[at])
         level = crossed.z_low if high else crossed.z_high
         axes.fill(
             (k + 0.5) * fabric.directions[direction].crossed_spacing + v,
@@ -117,3 +136,10 @@ def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 
         title=f"cut along {direction} {number}",
         aspect="equal",
     )
+
+
+def _on_axis(section: Section, side: str) -> float:
+    """Height of a section's bottom or top above its yarn's axis."""
+    v, z = section_outline(Section({side: section.strips[side]}), 201)
+    order = np.argsort(v, kind="stable")
+    return float(np.interp(0.0, v[order], z[order]))

@@ -101,14 +101,14 @@ def _classify(gmsh, plan: Plan, solid: int) -> dict:
         across = points[1, 1 - plan.along_axis] - plan.centre
         distances = np.hypot(middles[:, 0] - across, middles[:, 1] - points[1, 2])
         faces[segment, sides[int(distances.argmin())]] = face
-    expected = len(plan.strips) * len(plan.counts) + 2
+    expected = len(plan.strips) * len(plan.layers) + 2
     if len(faces) != expected:
         raise BuildError(f"{plan.yarn.name} has {len(faces)} faces that can be told apart, not {expected}")
     return faces
 
 
-def _curves(gmsh, plan: Plan, faces: dict) -> Iterator[tuple[int, int]]:
-    """Every edge of a yarn's skin and the number of elements along it."""
+def _curves(gmsh, plan: Plan, faces: dict) -> Iterator[tuple[int, np.ndarray]]:
+    """Every edge of a yarn's skin and the shares of its parameter at which its nodes lie."""
     seen = set()
     for key, face in faces.items():
         if key in ("start", "end"):
@@ -118,16 +118,18 @@ def _curves(gmsh, plan: Plan, faces: dict) -> Iterator[tuple[int, int]]:
             if curve in seen:
                 continue
             seen.add(curve)
-            ends = [
-                gmsh.model.getValue(0, point, [])[plan.along_axis]
-                for _, point in gmsh.model.getBoundary([(1, curve)], oriented=False)
-            ]
-            yield curve, plan.counts[segment] if abs(ends[0] - ends[1]) > _PLACE else len(plan.strips[side]) - 1
+            low, high = gmsh.model.getParametrizationBounds(1, curve)
+            start, end = gmsh.model.getValue(1, curve, [low[0], high[0]]).reshape(2, 3)
+            axis = 2 if side in ("left", "right") else 1 - plan.along_axis
+            shares = plan.strips[side][1]
+            if abs(start[plan.along_axis] - end[plan.along_axis]) > _PLACE:
+                axis, shares = plan.along_axis, plan.layers[segment]
+            yield curve, shares if start[axis] < end[axis] else 1 - shares[::-1]
 
 
 def _set_transfinite(gmsh, plan: Plan, faces: dict) -> None:
-    for curve, parts in _curves(gmsh, plan, faces):
-        gmsh.model.mesh.setTransfiniteCurve(curve, parts + 1)
+    for curve, shares in _curves(gmsh, plan, faces):
+        gmsh.model.mesh.setTransfiniteCurve(curve, len(shares))
     for key, face in faces.items():
         if key not in ("start", "end"):
             gmsh.model.mesh.setTransfiniteSurface(face)
@@ -135,14 +137,14 @@ def _set_transfinite(gmsh, plan: Plan, faces: dict) -> None:
 
 
 def _space(gmsh, plan: Plan, faces: dict) -> None:
-    """Space the nodes of every edge equally in its parameter, which runs with x, y or z.
+    """Move the nodes of every edge to their shares of its parameter, which runs with x, y or z.
 
     gmsh spaces them by arc length, which differs between the two edges of a yarn.
     """
-    for curve, parts in _curves(gmsh, plan, faces):
+    for curve, shares in _curves(gmsh, plan, faces):
         tags, _, at = gmsh.model.mesh.getNodes(1, curve, returnParametricCoord=True)
         low, high = gmsh.model.getParametrizationBounds(1, curve)
-        parameters = np.linspace(low[0], high[0], parts + 1)[1:-1]
+        parameters = low[0] + (high[0] - low[0]) * shares[1:-1]
         places = gmsh.model.getValue(1, curve, parameters).reshape(-1, 3)
         for tag, place, parameter in zip(tags[np.argsort(at)], places, parameters):
             gmsh.model.mesh.setNode(tag, place, [parameter])
@@ -167,18 +169,18 @@ def _fill(gmsh, plan: Plan, solid: int, faces: dict) -> None:
 
 def _outline(gmsh, plan: Plan, faces: dict) -> tuple[np.ndarray, np.ndarray]:
     """Tags (layers, outline) and places (layers, outline, 3) of the nodes around every layer."""
-    layers, outline = plan.rows[-1] + 1, plan.template.outline
-    tags = np.zeros((layers, outline), dtype=np.uint64)
-    places = np.full((layers, outline, 3), np.nan)
+    count, outline = plan.rows[-1] + 1, plan.template.outline
+    tags = np.zeros((count, outline), dtype=np.uint64)
+    places = np.full((count, outline, 3), np.nan)
     for (segment, side), face in ((key, face) for key, face in faces.items() if key not in ("start", "end")):
-        slots, parts = plan.strips[side], plan.counts[segment]
+        (slots, columns), layers = plan.strips[side], plan.layers[segment]
         found, coordinates, parameters = gmsh.model.mesh.getNodes(
             2, face, includeBoundary=True, returnParametricCoord=True
         )
         low, high = gmsh.model.getParametrizationBounds(2, face)
         share = (parameters.reshape(-1, 2) - low) / (high - low)
-        row, column = np.rint(share * [parts, len(slots) - 1]).astype(int).T
-        if len(found) != (parts + 1) * len(slots) or len(np.unique(row * len(slots) + column)) != len(found):
+        row, column = (np.searchsorted((s[1:] + s[:-1]) / 2, at) for s, at in zip((layers, columns), share.T))
+        if len(found) != len(layers) * len(slots) or len(np.unique(row * len(slots) + column)) != len(found):
             raise BuildError(f"gmsh did not mesh a face of {plan.yarn.name} transfinitely")
         at = plan.rows[segment] + row, slots[column]
         tags[at], places[at] = found, coordinates.reshape(-1, 3)

@@ -18,18 +18,18 @@ from .templates import Template, flat_template, lenticular_template, round_templ
 class Plan:
     """The mesh of one yarn, planned.
 
-    ``places`` of its control planes along the cell (mm) and ``counts`` of elements between
-    them; ``strips`` maps each side of the skin to the places of its nodes in the section's
-    outline, in the strip's own order; ``contacts`` lists (segment, side) of the faces that
-    touch; ``middles`` per segment the sides and their middles (v, z), mm; ``centre`` is the
-    coordinate of the axis.
+    ``places`` of its control planes along the cell (mm) and ``layers``, the shares from 0 to 1
+    at which nodes lie between two of them; ``strips`` maps each side of the skin to the places
+    of its nodes in the section's outline and to their shares of the strip, in the strip's own
+    order; ``contacts`` lists (segment, side) of the faces that touch; ``middles`` per segment
+    the sides and their middles (v, z), mm; ``centre`` is the coordinate of the axis.
     """
 
     yarn: Yarn
     places: np.ndarray
-    counts: tuple[int, ...]
+    layers: tuple[np.ndarray, ...]
     template: Template
-    strips: dict[str, np.ndarray]
+    strips: dict[str, tuple[np.ndarray, np.ndarray]]
     contacts: tuple[tuple[int, str], ...]
     middles: tuple[tuple[list[str], np.ndarray], ...]
     centre: float
@@ -42,7 +42,7 @@ class Plan:
     @property
     def rows(self) -> np.ndarray:
         """Number of the layer of nodes in which each control plane lies."""
-        return np.concatenate([[0], np.cumsum(self.counts)])
+        return np.concatenate([[0], np.cumsum([len(shares) - 1 for shares in self.layers])])
 
 
 def plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
@@ -52,58 +52,97 @@ def plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
     surface = skin(path, control_sections(fabric, yarn, planes))
     frame, crossed = fabric.frame(yarn.direction), "warp" if yarn.direction == "weft" else "weft"
     across = {"weft": options.across, "warp": options.crossing}
-    counts = []
+    gap = np.linspace(0.0, 1.0, options.gap // 2 + 1)
+    layers = []
     for high in yarn.high:
-        # along a crossing lie as many elements as across the side of the crossed yarn that is touched
-        side = "top" if high else "bottom"
-        parts = _partition(fabric.frame(crossed), side, across[crossed])
-        counts += [options.gap // 2, *(part for part in parts if part), options.gap // 2]
+        # along a crossing nodes lie as they do across the side of the crossed yarn that is touched
+        columns = _columns(fabric.frame(crossed), "top" if high else "bottom", across[crossed])
+        layers += [gap, *map(_shares, columns), gap]
     template, strips = _outline(frame, across[yarn.direction], options.through)
     contacts = [(contact_segment(planes, k), "bottom" if high else "top") for k, high in enumerate(yarn.high)]
     return Plan(
         yarn=yarn,
         places=np.array([plane.place for plane in planes]),
-        counts=tuple(counts),
+        layers=tuple(layers),
         template=template,
         strips=strips,
         contacts=tuple(contacts),
-        middles=_middles(surface, len(counts)),
+        middles=_middles(surface, len(layers)),
         centre=path.axis,
     )
 
 
-def _partition(frame: Frame, side: str, across: int) -> tuple[int, int, int]:
-    """Elements across a side of a yarn: left of its contact chord, on it, right of it."""
+def _shares(places: np.ndarray) -> np.ndarray:
+    return (places - places[0]) / (places[-1] - places[0])
+
+
+def _columns(frame: Frame, side: str, across: int) -> list[np.ndarray]:
+    """Places v (mm) of the nodes across a side: left of its contact chord, on it, right of it.
+
+    Top and bottom of a pointed or flat section have their nodes one above the other, at the
+    ends of either contact chord among others. A round section has ``across`` elements on
+    each chord, and its arcs follow.
+    """
+    edge, half = frame.width / 2, frame.splits[side][0]
+    if frame.form == "round":
+        lateral = max(1, round(across * (edge - half) / (2 * half)))
+        outside = np.linspace(half, edge, lateral + 1)
+        return [-outside[::-1], np.linspace(-half, half, across + 1), outside]
+    halves = sorted({frame.splits[each][0] for each in ("bottom", "top") if frame.has_laterals(each)} | {edge})
+    counts = _allotted(np.diff([-halves[0], *halves]) * ([1] + [2] * (len(halves) - 1)), across)
+    middle = np.linspace(-halves[0], halves[0], counts[0] + 1)
+    outer = [np.linspace(a, b, n // 2 + 1)[1:] for a, b, n in zip(halves, halves[1:], counts[1:])]
+    right = np.concatenate([[halves[0]], *outer])
+    places = np.concatenate([-right[:0:-1], middle, right[1:]])
+    places = (places - places[::-1]) / 2  # symmetric to the last bit
     if not frame.has_laterals(side):
-        return 0, across, 0
-    outside = 1 - 2 * frame.splits[side][0] / frame.width
-    lateral = max(1, round(across * outside / 2))
-    return lateral, across if frame.form == "round" else across - 2 * lateral, lateral
+        return [places]
+    first = int(np.abs(places + half).argmin())
+    return [places[: first + 1], places[first : len(places) - first], places[len(places) - first - 1 :]]
 
 
-def _outline(frame: Frame, across: int, through: int) -> tuple[Template, dict[str, np.ndarray]]:
-    """A section's template and each strip's places in its outline."""
+def _allotted(lengths: np.ndarray, across: int) -> list[int]:
+    """Numbers of elements on the middle interval and on the pairs beside it, ``across`` in all."""
+    pairs = [2 * max(1, round(across * length / lengths.sum() / 2)) for length in lengths[1:]]
+    return [max(1, across - sum(pairs)), *pairs]
+
+
+def _outline(frame: Frame, across: int, through: int) -> tuple[Template, dict[str, tuple[np.ndarray, np.ndarray]]]:
+    """A section's template, and each strip's places in its outline with their shares of the strip."""
+    columns = {side: _columns(frame, side, across) for side in ("bottom", "top")}
+    upright = 0
     if frame.form == "round":
         upright = through - 2  # the template adds a layer below and above
-        template = round_template(across, upright)
-    elif frame.form == "flat":
-        upright, template = through, flat_template(across, through)
+        chord = frame.splits["bottom"][0] + frame.splits["top"][0]
+        template = round_template(across, upright, (frame.width - chord) / chord)
     else:
-        upright, template = 0, lenticular_template(across, through)
+        places = np.unique(np.concatenate(columns["bottom"]))
+        across = len(places) - 1
+        if frame.form == "flat":
+            upright, template = through, flat_template(across, through)
+        else:
+            k = through // 2
+            template = lenticular_template(across, through, (places[k] - places[0]) / (places[2 * k] - places[0]))
     around = np.arange(template.outline + 1) % template.outline
     bottom, right = around[: across + 1], around[across : across + upright + 1]
     top = around[across + upright : 2 * across + upright + 1][::-1]
     left = around[2 * across + upright :][::-1]
     if frame.form == "round":
         half = upright // 2
-        strips = {"bottom": bottom, "top": top, "right_lower": right[: half + 1], "right_upper": right[half:][::-1]}
-        return template, strips | {"left_lower": left[: half + 1][::-1], "left_upper": left[half:]}
-    strips = {} if frame.form == "lenticular" else {"left": left, "right": right}
+        slots = {"bottom": bottom, "top": top, "right_lower": right[: half + 1], "right_upper": right[half:][::-1]}
+        slots |= {"left_lower": left[: half + 1][::-1], "left_upper": left[half:]}
+        return template, {side: (nodes, np.linspace(0.0, 1.0, len(nodes))) for side, nodes in slots.items()}
+    strips = {}
     for side, level, nodes in (("bottom", "lower", bottom), ("top", "upper", top)):
-        lateral, _, _ = _partition(frame, side, across)
-        if lateral:
-            strips[f"left_{level}"], strips[f"right_{level}"] = nodes[: lateral + 1], nodes[-lateral - 1 :]
-        strips[side] = nodes[lateral : len(nodes) - lateral]
+        names = [f"left_{level}", side, f"right_{level}"] if len(columns[side]) == 3 else [side]
+        first = 0
+        for name, piece in zip(names, columns[side]):
+            strips[name] = nodes[first : first + len(piece)], _shares(piece)
+            first += len(piece) - 1
+    if frame.form == "flat":
+        strips |= {
+            name: (nodes, np.linspace(0.0, 1.0, through + 1)) for name, nodes in (("left", left), ("right", right))
+        }
     return template, strips
 
 

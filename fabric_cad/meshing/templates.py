@@ -15,7 +15,8 @@ before the tip T become three patches of k x k quadrilaterals (drawn for k = 1):
                  '-.--*------------*---   ---*---
                    bottom k      bottom 2k
 
-M is at mid-height in column 2k, G = (T + top 2k + bottom 2k) / 3.
+M is at mid-height in column 2k, and G on the way there from T: at 2/3 of it where columns are
+equally wide, nearer to T where column k is.
 
 Round sections have no corner, so that a block of four sides would degenerate at the points
 where arcs and parabolas meet: an inner block is surrounded by one ring of quadrilaterals.
@@ -54,10 +55,11 @@ def flat_template(across: int, through: int) -> Template:
     return _template(outline, [_coons(bottom, top, left, right)])
 
 
-def lenticular_template(across: int, through: int) -> Template:
+def lenticular_template(across: int, through: int, near: float = 0.5) -> Template:
     """Quadrilaterals of a section with two pointed edges; ``through`` = 2k is even.
 
-    Raises ValueError unless ``across`` is at least twice ``through``.
+    ``near`` is the distance of column k from the tip over that of column 2k. Raises ValueError
+    unless ``across`` is at least twice ``through``.
     """
     if through % 2 or across < 2 * through:
         raise ValueError(f"{across} columns do not hold two pointed edges of {through} layers")
@@ -72,24 +74,32 @@ def lenticular_template(across: int, through: int) -> Template:
         _straight(bottom[through], top[through], through),
         _straight(bottom[-through - 1], top[-through - 1], through),
     )
-    left = _tip(bottom[: through + 1], top[: through + 1], k)
-    right = _tip(bottom[::-1][: through + 1], top[::-1][: through + 1], k)
+    left = _tip(bottom[: through + 1], top[: through + 1], k, near)
+    right = _tip(bottom[::-1][: through + 1], top[::-1][: through + 1], k, near)
     return _template(outline, [core, *left, *(patch[::-1] for patch in right)])
 
 
 _RING = 0.5
-"""Thickness of the ring of a round section, in columns and rows of the inner block."""
+"""Thickness of the ring of a round section, in rows of the inner block."""
+
+_SLENDER = 1.3
+"""Thickness of the ring at the lateral zones over that at bottom and top: with it the edges that
+leave the smooth corners stand about upright on the outline."""
 
 
-def round_template(across: int, through: int) -> Template:
-    """An inner block of ``across`` x ``through`` in a ring: through + 2 layers in all."""
+def round_template(across: int, through: int, lateral: float) -> Template:
+    """An inner block of ``across`` x ``through`` in a ring: through + 2 layers in all.
+
+    ``lateral`` is the height of the lateral zones as a share of the distance between them.
+    """
     outline = 2 * (across + through)
     node = np.eye(outline)
     bottom = node[: across + 1]
     right = node[across : across + through + 1]
     top = node[across + through : 2 * across + through + 1][::-1]
     left = np.vstack([node[2 * across + through :], node[:1]])[::-1]
-    inset = _RING / (across + 2 * _RING), _RING / (through + 2 * _RING)
+    margin = _RING / (through + 2 * _RING)
+    inset = _SLENDER * margin * lateral, margin
     s, t = (
         margin + np.linspace(0.0, 1.0, parts + 1) * (1 - 2 * margin) for margin, parts in zip(inset, (across, through))
     )
@@ -116,10 +126,11 @@ def _coons_at(bottom, top, left, right, s: np.ndarray, t: np.ndarray) -> np.ndar
     return sides - (1 - s) * ((1 - t) * bottom[0] + t * top[0]) - s * ((1 - t) * bottom[-1] + t * top[-1])
 
 
-def _tip(bottom: np.ndarray, top: np.ndarray, k: int) -> list[np.ndarray]:
+def _tip(bottom: np.ndarray, top: np.ndarray, k: int, near: float) -> list[np.ndarray]:
     """The three patches of a left tip; row 0 of ``bottom`` and of ``top`` is the tip itself."""
     middle = (bottom[2 * k] + top[2 * k]) / 2
-    centre = (bottom[0] + bottom[2 * k] + top[2 * k]) / 3
+    share = min(4 / 3 * near, 0.9)
+    centre = (1 - share) * bottom[0] + share * middle
     to_top, to_bottom, to_middle = (_straight(centre, end, k) for end in (top[k], bottom[k], middle))
     point = _coons(bottom[: k + 1], to_top[::-1], top[: k + 1], to_bottom[::-1])
     upper = _coons(to_middle, top[k:], to_top, _straight(middle, top[2 * k], k))
