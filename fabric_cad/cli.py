@@ -15,8 +15,8 @@ _DESCRIPTION = """\
 From a few numbers measured on a woven fabric to a CAD model and a hexahedral mesh of its
 elementary cell, in which the yarns touch exactly where they should and never run into each other.
 
-Fabrics are rows of the family tables plain.csv, twill.csv and satin.csv (lengths in mm):
-yarn density and width, and crimps or thicknesses. 'fabric-cad init' puts tables to start
+Fabrics are rows of the family tables plain.csv, twill.csv, satin.csv and pattern.csv, any
+other weave (lengths in mm): yarn density and width, and crimps or thicknesses. 'fabric-cad init' puts tables to start
 from into ./families.
 """
 _EPILOG = "exit status: 0 done, 2 bad input or usage, 1 anything else"
@@ -161,13 +161,12 @@ def _list(settings) -> int:
     for family, (measured, table) in solved.items():
         columns = table.columns
         for at, name in enumerate(columns["name"]):
-            weave = measured.weaves[at]
-            kind = f"{weave.over}*{weave.under}" if family != "satin" else f"{weave.warps} step {weave.step}"
+            kind = measured.weaves[at].name(family)
             quantities = ["density", "width", *columns["identified_by"][at].split()]
             lines.append(
                 (
                     name,
-                    f"{family} {kind}",
+                    kind,
                     columns["section"][at],
                     f"{columns['parameters'][at]} parameters",
                     ", ".join(quantities),
