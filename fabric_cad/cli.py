@@ -66,6 +66,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     show = command("show", _show, "show a row's cell in a window; makes it first if it is not there")
     show.add_argument("row", metavar="ROW", help="name of a row of any family table")
+    wif = command("wif", _wif, "print a weaving draft (.wif) as a row to paste into pattern.csv")
+    wif.add_argument("draft", metavar="DRAFT.wif", help="a draft with a tie-up and treadling, or a liftplan")
+    wif.add_argument("--name", required=True, metavar="NAME", help="name of the row")
     command("init", _init, "put the shipped family tables into ./families (files that exist are kept)")
     return parser
 
@@ -246,6 +249,15 @@ def _show(settings) -> int:
     from .views import show_cell
 
     show_cell(read_mesh(mesh_file), settings.row)
+    return 0
+
+
+def _wif(settings) -> int:
+    from .wif import wif_row
+
+    row = wif_row(settings.draft, settings.name)
+    if not settings.quiet:
+        print(row, end="")
     return 0
 
 
