@@ -15,9 +15,9 @@ _DESCRIPTION = """\
 From a few numbers measured on a woven fabric to a CAD model and a hexahedral mesh of its
 elementary cell, in which the yarns touch exactly where they should and never run into each other.
 
-Fabrics are rows of the family tables plain.csv, twill.csv, satin.csv and pattern.csv, any
-other weave (lengths in mm): yarn density and width, and crimps or thicknesses. 'fabric-cad init' puts tables to start
-from into ./families.
+Fabrics are rows of the family tables plain.csv, twill.csv, satin.csv and, for any other weave,
+pattern.csv (lengths in mm): yarn density and width, and crimps or thicknesses. 'fabric-cad init'
+puts tables to start from into ./families.
 """
 _EPILOG = "exit status: 0 done, 2 bad input or usage, 1 anything else"
 
