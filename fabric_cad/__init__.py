@@ -19,6 +19,7 @@ __version__ = "0.1.0"
 _FROM = {
     "read_family": "tables",
     "read_families": "tables",
+    "read_wif": "wif",
     "identify": "identification",
     "read_solved": "solved",
     "SolvedFabric": "solved",

@@ -15,9 +15,9 @@ _DESCRIPTION = """\
 From a few numbers measured on a woven fabric to a CAD model and a hexahedral mesh of its
 elementary cell, in which the yarns touch exactly where they should and never run into each other.
 
-Fabrics are rows of the family tables plain.csv, twill.csv and satin.csv (lengths in mm):
-yarn density and width, and crimps or thicknesses. 'fabric-cad init' puts tables to start
-from into ./families.
+Fabrics are rows of the family tables plain.csv, twill.csv, satin.csv and, for any other weave,
+pattern.csv (lengths in mm): yarn density and width, and crimps or thicknesses. 'fabric-cad init'
+puts tables to start from into ./families.
 """
 _EPILOG = "exit status: 0 done, 2 bad input or usage, 1 anything else"
 
@@ -66,6 +66,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     show = command("show", _show, "show a row's cell in a window; makes it first if it is not there")
     show.add_argument("row", metavar="ROW", help="name of a row of any family table")
+    wif = command("wif", _wif, "print a weaving draft (.wif) as a row to paste into pattern.csv")
+    wif.add_argument("draft", metavar="DRAFT.wif", help="a draft with a tie-up and treadling, or a liftplan")
+    wif.add_argument("--name", required=True, metavar="NAME", help="name of the row")
     command("init", _init, "put the shipped family tables into ./families (files that exist are kept)")
     return parser
 
@@ -161,13 +164,12 @@ def _list(settings) -> int:
     for family, (measured, table) in solved.items():
         columns = table.columns
         for at, name in enumerate(columns["name"]):
-            weave = measured.weaves[at]
-            kind = f"{weave.over}*{weave.under}" if family != "satin" else f"{weave.warps} step {weave.step}"
+            kind = measured.weaves[at].name(family)
             quantities = ["density", "width", *columns["identified_by"][at].split()]
             lines.append(
                 (
                     name,
-                    f"{family} {kind}",
+                    kind,
                     columns["section"][at],
                     f"{columns['parameters'][at]} parameters",
                     ", ".join(quantities),
@@ -247,6 +249,15 @@ def _show(settings) -> int:
     from .views import show_cell
 
     show_cell(read_mesh(mesh_file), settings.row)
+    return 0
+
+
+def _wif(settings) -> int:
+    from .wif import wif_row
+
+    row = wif_row(settings.draft, settings.name)
+    if not settings.quiet:
+        print(row, end="")
     return 0
 
 

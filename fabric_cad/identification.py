@@ -396,6 +396,8 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
     thickness = {"weft": closed.b1, "warp": closed.b2}
     slope = {d: amplitude[d] / transitions[d].rise for d in DIRECTIONS}
     arcs = _arcs(measured, transitions, closed)
+    # a pattern's warps may change sides more or less often than its wefts: then no one crimp is both's
+    alike = transitions["weft"].projected == transitions["warp"].projected
     columns: dict[str, object] = {
         "name": list(table.names),
         "family": [table.family] * len(table),
@@ -433,7 +435,7 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
             f"{d}_width_mm": measured.width[d],
             f"{d}_thickness_mm": thickness[d],
             f"{d}_crimp": np.where(
-                _is_used(used, CLOSING.index(f"{d}_crimp"), measured), _crimp(measured, d), t.crimp(slope[d])
+                _is_used(used, CLOSING.index(f"{d}_crimp"), measured, alike), _crimp(measured, d), t.crimp(slope[d])
             ),
             f"{d}_slope": slope[d],
             f"{d}_amplitude_mm": amplitude[d],
@@ -500,12 +502,15 @@ def _crimp(measured: _Measured, direction: str) -> np.ndarray:
     return weft if direction == "weft" else np.where(measured.balanced, weft, warp)
 
 
-def _is_used(used, column: int, measured: _Measured) -> np.ndarray:
-    """Boolean (rows,): the quantity of that number in CLOSING identified the row."""
+def _is_used(used, column: int, measured: _Measured, alike: np.ndarray) -> np.ndarray:
+    """Boolean (rows,): the quantity of that number in CLOSING identified the row.
+
+    In a balanced row the weft's crimp is the warp's too where both float ``alike``.
+    """
     return np.array(
         [
-            column in columns or (balanced and columns == (0,) and column == 1)
-            for columns, balanced in zip(used, measured.balanced)
+            column in columns or (both and columns == (0,) and column == 1)
+            for columns, both in zip(used, measured.balanced & alike)
         ],
         dtype=bool,
     )

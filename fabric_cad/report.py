@@ -10,6 +10,7 @@ import numpy as np
 from .errors import BuildError
 from .meshing.mesh import Mesh
 from .solved import Direction, SolvedFabric, point_columns
+from .weaves import Weave
 
 COINCIDENT = 1e-9
 """Distance (mm) up to which two nodes, or two faces, count as at the same place."""
@@ -83,13 +84,7 @@ def cell_report(
     return {
         "row": fabric.name,
         "family": fabric.family,
-        "weave": {
-            "over": fabric.weave.over,
-            "under": fabric.weave.under,
-            "step": fabric.weave.step,
-            "wefts": fabric.weave.wefts,
-            "warps": fabric.weave.warps,
-        },
+        "weave": _weave(fabric.weave),
         "section": fabric.section,
         "parameters": int(row["parameters"]),
         "identified": identified,
@@ -124,6 +119,13 @@ def cell_report(
         },
         "seconds": dict(seconds),
     }
+
+
+def _weave(weave: Weave) -> dict:
+    counts = {"wefts": weave.wefts, "warps": weave.warps}
+    if weave.pattern:
+        return {"over": None, "under": None, "step": None, **counts, "pattern": list(weave.pattern)}
+    return {"over": weave.over, "under": weave.under, "step": weave.step, **counts}
 
 
 def _identified(name: str, solved: Direction) -> dict:
@@ -182,11 +184,14 @@ def summary(report: dict) -> str:
     """A short table of a report for a person."""
     weave, found, mesh = report["weave"], report["identified"], report["mesh"]
     touch, volumes = report["consistency"], report["volumes"]
-    kind = f"{report['family']} {weave['over']}*{weave['under']}" + (
-        f" step {weave['step']}" if report["family"] == "satin" else ""
-    )
+    if weave["over"] is None:
+        kind = report["family"]
+    else:
+        kind = f"{report['family']} {weave['over']}*{weave['under']}" + (
+            f" step {weave['step']}," if report["family"] == "satin" else ","
+        )
     lines = [
-        f"{report['row']}: {kind}, {weave['wefts']} wefts x {weave['warps']} warps, "
+        f"{report['row']}: {kind} {weave['wefts']} wefts x {weave['warps']} warps, "
         f"{report['section']} sections, {report['parameters']} parameters",
         f"  {'':22}{'weft':>12}{'warp':>12}",
     ]

@@ -16,9 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from .errors import InputError, Problem
-from .weaves import DIRECTIONS, FAMILIES, Weave, weave_of
+from .patterns import read_pattern
+from .weaves import DIRECTIONS, FAMILIES, Weave, pattern_faults, weave_of
 
-WEAVE_COLUMNS = {"plain": (), "twill": ("over", "under"), "satin": ("harness", "step")}
+WEAVE_COLUMNS = {"plain": (), "twill": ("over", "under"), "satin": ("harness", "step"), "pattern": ("pattern",)}
 
 _PER_DIRECTION = (
     "density_per_mm",
@@ -55,12 +56,17 @@ TEXTS = ("name", "section", "thicker", "source", "notes")
 SECTIONS = ("lenticular", "flat", "round")
 
 MOST_YARNS = 100
-"""Largest float or harness a table may ask for."""
+"""Largest float or harness a table may ask for, and most wefts or warps of a pattern."""
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,79}")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _WHOLE = re.compile(r"\d{1,4}")
 _RESERVED = {"families", "con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in range(10)}
+
+
+def is_safe_name(name: str) -> bool:
+    """True where a text may name a row, and so its files and folder, on every system."""
+    return bool(_NAME.fullmatch(name)) and name.lower() not in _RESERVED
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +238,8 @@ class _TableReader:
             lines[lines.index(first)] = ""
         else:
             self.separator = next((s for s in ";\t" if s in first), ",")
-        reader = csv.reader(lines, delimiter=self.separator, skipinitialspace=True)
+        # ended again, so that line breaks inside a quoted cell stay
+        reader = csv.reader((line + "\n" for line in lines), delimiter=self.separator, skipinitialspace=True)
         line = 1
         try:
             for cells in reader:
@@ -282,7 +289,9 @@ class _TableReader:
         before = len(self.problems)
         self.check_name(name, line)
         for column, text in texts.items():
-            if column in self.whole:
+            if column == "pattern":
+                row[column] = self.pattern(text, line, column, name)
+            elif column in self.whole:
                 row[column] = self.whole_number(text, line, column, name)
             elif text and column not in TEXTS:
                 kept, factor = _OTHER_UNITS.get(column, (column, 1.0))
@@ -300,7 +309,7 @@ class _TableReader:
     def check_name(self, name: str, line: int) -> None:
         if not name:
             self.wrong("the row has no name", line, "name")
-        elif not _NAME.fullmatch(name) or name.lower() in _RESERVED:
+        elif not is_safe_name(name):
             self.wrong(
                 f"{name!r} is no safe file name: letters, digits, '_' and '-' only, not '-' first, "
                 "at most 80 characters, and no name a system keeps for itself",
@@ -341,6 +350,29 @@ class _TableReader:
         if not 1 <= int(text) <= MOST_YARNS:
             self.wrong(f"{text} is not between 1 and {MOST_YARNS}", line, column, name)
         return int(text)
+
+    def pattern(self, text: str, line: int, column: str, name: str) -> tuple[str, ...]:
+        try:
+            pattern = read_pattern(text)
+        except ValueError as error:
+            self.wrong(str(error), line, column, name)
+            return ()
+        wefts, warps = len(pattern), max(map(len, pattern), default=0)
+        if not pattern:
+            self.wrong("this cell is empty", line, column, name)
+        elif wefts == 1:
+            message = f"{text!r} is one weft only; part the wefts by a space, / or |"
+            self.wrong(message, line, column, name)
+        elif max(wefts, warps) > MOST_YARNS:
+            message = f"{wefts} wefts x {warps} warps are more than {MOST_YARNS} in a direction"
+            self.wrong(message, line, column, name)
+        else:
+            digits = "0" in text or "1" in text
+            hint = "; a spreadsheet drops the zeros a number starts with: write o and u for 1 and 0" if digits else ""
+            uneven = len(set(map(len, pattern))) > 1
+            for fault in pattern_faults(pattern):
+                self.wrong(fault + hint * uneven, line, column, name)
+        return pattern
 
     def check_weave(self, row: dict, line: int, name: str) -> None:
         if self.family != "satin":

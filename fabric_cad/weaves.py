@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import gcd
 
 import numpy as np
 
-FAMILIES = ("plain", "twill", "satin")
+FAMILIES = ("plain", "twill", "satin", "pattern")
 """The weave types; each has one table ``<family>.csv`` and one master."""
 
 DIRECTIONS = ("weft", "warp")
@@ -25,7 +26,8 @@ class Weave:
 
     ``pattern`` has one text a weft, of ``1`` where it passes over the warp and ``0`` where
     under; ``over``, ``under`` and ``step`` then mean nothing and are 0. Every yarn must
-    change sides somewhere. Raises ValueError.
+    change sides somewhere, and none may lie over or under all others with nothing tying them
+    together (:func:`pattern_faults`). Raises ValueError.
     """
 
     over: int = 0
@@ -35,7 +37,8 @@ class Weave:
 
     def __post_init__(self) -> None:
         if self.pattern:
-            _check_pattern(self.pattern)
+            if faults := pattern_faults(self.pattern):
+                raise ValueError("; ".join(faults))
             return
         if self.over < 1 or self.under < 1:
             raise ValueError(f"a yarn passes over and under at least one yarn, got {self.over}*{self.under}")
@@ -63,6 +66,12 @@ class Weave:
         wefts, warps = np.ogrid[: self.wefts, : self.warps]
         return (warps - self.step * wefts) % self.warps < self.over
 
+    def name(self, family: str) -> str:
+        """What people call it, e.g. ``satin 8 step 3`` or ``pattern 4 wefts x 6 warps``."""
+        if self.pattern:
+            return f"{family} {self.wefts} wefts x {self.warps} warps"
+        return f"{family} {self.warps} step {self.step}" if family == "satin" else f"{family} {self.over}*{self.under}"
+
     def floats(self, direction: str) -> tuple[float, float]:
         """Mean length of a direction's low and of its high floats, in crossed yarns."""
         if not self.pattern:
@@ -70,16 +79,44 @@ class Weave:
         return _mean_floats(self, direction)
 
 
-def _check_pattern(pattern: tuple[str, ...]) -> None:
-    if len({len(row) for row in pattern}) != 1 or not pattern[0]:
-        raise ValueError("the rows of a pattern are not equally long")
+@lru_cache(maxsize=1024)
+def pattern_faults(pattern: tuple[str, ...]) -> tuple[str, ...]:
+    """What makes a pattern of ``1`` and ``0`` no weave, one text each; none where it is one."""
     if strange := set("".join(pattern)) - {"0", "1"}:
-        raise ValueError(f"a pattern is of 0 and 1, not {', '.join(sorted(strange))}")
+        return (f"a pattern is of 0 and 1, not {', '.join(sorted(strange))}",)
+    warps = len(pattern[0])
+    if uneven := [
+        f"weft {number} has {len(row)} marks where weft 1 has {warps}"
+        for number, row in enumerate(pattern, start=1)
+        if len(row) != warps
+    ]:
+        return tuple(uneven)
+    idle = []
     for name, yarns in (("weft", pattern), ("warp", list(zip(*pattern)))):
         for number, yarn in enumerate(yarns, start=1):
             if len(set(yarn)) == 1:
                 side = "over" if (yarn[0] == "1") == (name == "weft") else "under"
-                raise ValueError(f"{name} {number} passes {side} every yarn and never interlaces")
+                idle.append(f"{name} {number} passes {side} every yarn and never interlaces")
+    return tuple(idle) or _layers(np.array([[mark == "1" for mark in row] for row in pattern]))
+
+
+def _layers(weft_over_warp: np.ndarray) -> tuple[str, ...]:
+    """A text where some yarns lie wholly under the others: then nothing holds the fabric together."""
+    for side, over in (("under", weft_over_warp), ("over", ~weft_over_warp)):
+        wefts, warps = np.zeros(len(over), dtype=bool), np.zeros(over.shape[1], dtype=bool)
+        wefts[0] = True  # and from there every yarn that lies below (above) one reached
+        before, reached = 0, 1
+        while reached > before:
+            warps |= over[wefts].any(axis=0)
+            wefts |= ~over[:, warps].all(axis=1)
+            before, reached = reached, np.count_nonzero(wefts) + np.count_nonzero(warps)
+        if reached < sum(over.shape):
+            names = (
+                f"{name} {', '.join(map(str, np.flatnonzero(yarns) + 1))}"
+                for name, yarns in (("weft", wefts), ("warp", warps))
+            )
+            return (f"{' and '.join(names)} lie {side} all other yarns: the weave falls into separate layers",)
+    return ()
 
 
 @lru_cache(maxsize=1024)
@@ -90,13 +127,15 @@ def _mean_floats(weave: Weave, direction: str) -> tuple[float, float]:
     return float(np.count_nonzero(~high) / floats), float(np.count_nonzero(high) / floats)
 
 
-def weave_of(family: str, numbers: dict[str, int]) -> Weave:
-    """The weave of one row of a family table, from its weave columns (empty for plain)."""
+def weave_of(family: str, cells: Mapping) -> Weave:
+    """The weave of one row of a family table, from its weave columns (none for plain)."""
     if family == "plain":
         return Weave(1, 1)
     if family == "twill":
-        return Weave(numbers["over"], numbers["under"])
-    return Weave(1, numbers["harness"] - 1, numbers["step"])
+        return Weave(cells["over"], cells["under"])
+    if family == "satin":
+        return Weave(1, cells["harness"] - 1, cells["step"])
+    return Weave(pattern=cells["pattern"])
 
 
 @dataclass(frozen=True)

@@ -112,8 +112,7 @@ def test_step_has_names_colours_and_common_tangents(made):
     for _, name, _, colour in assembly:
         names.append(name.split("/")[-1])
         colours[names[-1].split("_")[0]].add(tuple(round(c, 3) for c in colour.toTuple()[:3]))
-    count = range(1, made.fabric.weave.wefts + 1)
-    assert names == [f"weft_{k}" for k in count] + [f"warp_{k}" for k in count]
+    assert names == [yarn.name for yarn in yarns_of(made.fabric.weave.interlacement())]
     assert len(colours["weft"]) == len(colours["warp"]) == 1 and colours["weft"] != colours["warp"]
 
     def normal(face, point):
@@ -139,7 +138,7 @@ def test_step_has_names_colours_and_common_tangents(made):
             one, other = (normal(face, curve.Value(u)) for face in faces)
             assert np.degrees(np.arccos(min(1.0, abs(one @ other)))) < 0.01
             checked += 1
-    assert checked == 3 * 2 * (3 * made.fabric.weave.wefts - 1)
+    assert checked == 3 * 2 * (3 * made.fabric.weave.warps - 1)
 
 
 def test_step_is_small(twill32):
@@ -176,7 +175,7 @@ def test_mesh_file_by_another_reader(made):
     hexahedra = np.vstack([block.data for block in mesh.cells if block.type == "hexahedron"])
     assert len(hexahedra) == made.report["mesh"]["hexahedra"]
     assert len(mesh.points) == len(np.unique(hexahedra)) == made.report["mesh"]["nodes"]  # no orphan
-    names = {f"{d}_{k}" for d in ("weft", "warp") for k in range(1, made.fabric.weave.wefts + 1)}
+    names = {yarn.name for yarn in yarns_of(made.fabric.weave.interlacement())}
     kinds = ("contact", "free", "start", "end")
     assert set(mesh.field_data) == names | {f"{name}_{kind}" for name in names for kind in kinds}
     assert all(dimension == (3 if name in names else 2) for name, (_, dimension) in mesh.field_data.items())

@@ -39,6 +39,7 @@ def test_list_shows_every_row_with_its_model(here, capsys):
     for name in ("plain", "twill21", "twill22", "twill31", "twill32", "twill43", "satin5", "satin8"):
         assert "3 parameters" in rows[name]
     assert "7 parameters" in rows["plain_unbalanced"]
+    assert "pattern 4 wefts x 8 warps" in rows["herringbone22"]
     assert "satin 8 step 3" in rows["satin8"] and "twill 3*2" in rows["twill32"]
 
 
@@ -47,7 +48,8 @@ def test_solve_writes_every_table(here, capsys):
 
     assert main(["solve", "--out", "results"]) == 0
     assert "plain_unbalanced: two solutions" in capsys.readouterr().out
-    assert sorted(p.name for p in (here / "results" / "families").iterdir()) == ["plain.csv", "satin.csv", "twill.csv"]
+    written = sorted(p.name for p in (here / "results" / "families").iterdir())
+    assert written == ["pattern.csv", "plain.csv", "satin.csv", "twill.csv"]
     fabric = read_solved("results/families/twill.csv", "twill32")
     assert fabric.weft.amplitude == pytest.approx(0.354794, abs=1e-6)
 

@@ -1,4 +1,4 @@
-"""What the three masters share: control planes, control sections, trajectory, sweep.
+"""What the masters share: control planes, control sections, trajectory, sweep.
 
 Every yarn of the elementary cell is cut by control planes: mid-gap, begin and end of each
 crossing (paper, Fig. 12). In each plane stands a control section (Fig. 9, 13), and the
