@@ -20,6 +20,7 @@ _FROM = {
     "read_family": "tables",
     "read_families": "tables",
     "identify": "identification",
+    "propagate": "scatter",
     "read_solved": "solved",
     "SolvedFabric": "solved",
     "build_cell": "masters",

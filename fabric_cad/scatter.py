@@ -161,8 +161,8 @@ def _identified_at(table: Family, name: str, values: np.ndarray, columns) -> tup
     Rows that are no fabric with it are NaN; second, why, by row number.
     """
     moved = replace(table, measured=table.measured | {name: values})
-    low = values < 0 if "_offset_" in name else values <= 0
-    refused = {at: f"{values[at]:.4g} is below what can be measured" for at in np.flatnonzero(low).tolist()}
+    low, bound = (values < 0, "below 0") if "_offset_" in name else (values <= 0, "not above 0")
+    refused = {at: f"{values[at]:.4g} is {bound}" for at in np.flatnonzero(low).tolist()}
     for d in DIRECTIONS:
         width, density = moved.measured[f"{d}_width_mm"], moved.measured[f"{d}_density_per_mm"]
         for at in np.flatnonzero(~low & (width * density >= 1)).tolist():
