@@ -3,6 +3,7 @@
 import csv
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from fabrics import TWILL32, UNBALANCED, random_row, table
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import fabric_cad
 from fabric_cad.cli import main, shipped_families
 from fabric_cad.errors import InputError
 from fabric_cad.identification import CLOSING, identify
@@ -187,7 +189,7 @@ def test_at_a_bound_the_difference_is_one_sided():
 
 
 def test_between_two_bounds_the_row_and_column_are_named():
-    """A sheer w from below, flat sides with a hair of room from above."""
+    """The least w from below, flat sides with a hair of room from above."""
     solved = identify(table("plain", AT_BOUND)).row("bound")
     rise = solved["weft_slope"] * 3.2 / 4
     row = AT_BOUND | {"section": "flat", "lateral_height_mm": (0.36 - rise) * (1 - 1e-8)}
@@ -359,11 +361,12 @@ def test_shipped_rows_agree_with_the_model():
     assert all(not doubts(each, one) for each, one in zip(tables, solved))
 
 
-def test_validation_loads_no_more_than_it_needs(tmp_path):
+def test_validation_loads_no_more_than_it_needs():
     code = "import sys; from fabric_cad.cli import main; main(['validate', '-q', '--families', sys.argv[1]])"
     code += "; print([name for name in ('cadquery', 'OCP', 'gmsh', 'scipy', 'pyvista') if name in sys.modules])"
     command = [sys.executable, "-c", code, str(shipped_families())]
-    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip() == "[]"
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(fabric_cad.__file__).parents[1])
+    assert done.stdout.strip() == "[]"
 
 
 def test_the_report_holds_standard_deviations(tmp_path):
