@@ -42,6 +42,10 @@ list: $(READY) ## every row of the family tables
 families: $(READY) ## solve every row of every table into build/families/<family>.csv
 	@$(BIN)/fabric-cad solve
 
+.PHONY: validate
+validate: $(READY) ## measured against model, standard deviations propagated
+	@$(BIN)/fabric-cad validate
+
 .PHONY: test
 test: $(READY) ## run the tests
 	@$(BIN)/python -m pytest -n 2 --dist loadfile

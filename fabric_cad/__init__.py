@@ -21,6 +21,7 @@ _FROM = {
     "read_families": "tables",
     "read_wif": "wif",
     "identify": "identification",
+    "propagate": "scatter",
     "read_solved": "solved",
     "SolvedFabric": "solved",
     "build_cell": "masters",

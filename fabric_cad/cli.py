@@ -54,6 +54,9 @@ def _parser() -> argparse.ArgumentParser:
 
     command("list", _list, "list every row with its weave, its model and what identifies it")
     command("solve", _solve, "solve every row of every table into OUT/families/<family>.csv")
+    command(
+        "validate", _validate, "compare what rows measure beyond need with the model; propagate their *_std columns"
+    )
     cell = command("cell", _cell, "make a row's STEP, mesh, deck, picture and report in OUT/<row>")
     cell.add_argument("row", metavar="ROW", help="name of a row of any family table")
     for name, kind, metavar, text in _MESH:
@@ -177,11 +180,15 @@ def _list(settings) -> int:
                 )
             )
     if not settings.quiet:
-        widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
-        for line in lines:
-            print("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip())
+        _print_table(lines)
     _raise(errors)
     return 0
+
+
+def _print_table(lines: list[tuple[str, ...]]) -> None:
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    for line in lines:
+        print("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip())
 
 
 def _solve(settings) -> int:
@@ -214,6 +221,39 @@ def _print_notes(table) -> None:
         for quantity, measured, model in table.comparisons[at]:
             difference = 100 * (model - measured) / measured
             print(f"  {name}: {quantity} measured {measured:.4g}, model {model:.4g} ({difference:+.2f} %)")
+
+
+def _validate(settings) -> int:
+    from .scatter import doubts, propagate
+    from .validation import compared, spread_out
+
+    solved, errors = _tables(settings)
+    comparisons, spreads, notes, worst = [], [], [], []
+    for measured, table in solved.values():
+        try:
+            spread = propagate(measured, table)
+        except InputError as error:
+            errors.append(error)
+            continue
+        comparisons += compared(measured, table, spread)
+        spreads += spread_out(measured, spread)
+        notes += doubts(measured, table)
+        worst += [100 * abs(model / value - 1) for row in table.comparisons for _, value, model in row]
+    if not settings.quiet:
+        if comparisons:
+            _print_table([("row", "quantity", "measured", "model", "difference %"), *comparisons])
+            print(f"{len(worst)} comparisons, the largest difference {max(worst):.2f} %")
+        else:
+            print("no row measures more than what identifies it: nothing to compare with the model")
+        print()
+        if spreads:
+            _print_table([("row", "identified", "weft", "warp"), *spreads])
+        else:
+            print("no row gives a standard deviation (columns *_std): none to propagate")
+        for note in notes:
+            print(f"note: {note}")
+    _raise(errors)
+    return 0
 
 
 def _cell(settings) -> int:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from .errors import InputError
 from .identification import identify
+from .scatter import propagate
 from .solved import read_solved
 from .staging import staged
 from .sweeps import contact_patches
@@ -75,6 +76,7 @@ def make_cell(
     (name,) = row.names
     with stages("identify"):
         table = identify(row)
+        std = propagate(row, table).row(0) if row.scattered[0] else None
     with staged(Path(out) / name) as folder:
         path = {kind: folder / f"{name}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")}
         table.write(folder / "solved.csv")
@@ -126,6 +128,7 @@ def make_cell(
             allowed,
             yarn_data,
             {key: round(value, 4) for key, value in stages.seconds.items()},
+            std,
         )
         check_report(report)
         (folder / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")

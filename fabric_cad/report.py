@@ -65,16 +65,23 @@ def cell_report(
     allowed_quality: float,
     yarn_data: Mapping[str, float | None],
     seconds: Mapping[str, float],
+    std: Mapping[str, float] | None = None,
 ) -> dict:
     """The content of ``report.json``; lengths mm.
 
     ``consistency`` is what :func:`fabric_cad.cad.inspect_cell` measured on the STEP,
     ``mesh`` and ``quality`` come from the mesh file, ``yarn_data`` holds
-    ``weft_linear_density_tex``, ``warp_linear_density_tex`` and ``fibre_density_g_cm3``.
+    ``weft_linear_density_tex``, ``warp_linear_density_tex`` and ``fibre_density_g_cm3``,
+    ``std`` the standard deviations of the columns of ``row`` where its measurements have any.
     """
     contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.period)
     identified = {name: _identified(name, fabric.directions[name]) for name in ("weft", "warp")}
     identified["fabric_thickness_mm"] = fabric.fabric_thickness
+    if std is not None:
+        scattered = SolvedFabric.from_row({**row, **std})  # a fabric whose numbers are standard deviations
+        for name, direction in scattered.directions.items():
+            identified[name]["std"] = _identified(name, direction)
+        identified["fabric_thickness_std_mm"] = scattered.fabric_thickness
     identified["identified_by"] = str(row["identified_by"]).split()
     if row["other_weft_thickness_mm"] != "":
         identified["other_solution"] = {

@@ -10,7 +10,8 @@ import csv
 import difflib
 import math
 import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +41,7 @@ MEASURED = (
 )
 """Columns that hold a measured number, in the unit they are kept in."""
 
-_MAY_BE_ZERO = {name for name in MEASURED if "_offset_" in name}
+_STD = tuple(f"{name}_std" for name in MEASURED)
 
 _OTHER_UNITS = {
     f"{direction}_{written}": (f"{direction}_{kept}", factor)
@@ -51,6 +52,9 @@ _OTHER_UNITS = {
         ("crimp_percent", "crimp", 0.01),
     )
 }
+_OTHER_UNITS |= {f"{written}_std": (f"{kept}_std", factor) for written, (kept, factor) in _OTHER_UNITS.items()}
+_STD_WRITTEN = {*_STD, *(written for written in _OTHER_UNITS if written.endswith("_std"))}
+_MAY_BE_ZERO = {name for name in MEASURED if "_offset_" in name} | _STD_WRITTEN
 
 TEXTS = ("name", "section", "thicker", "source", "notes")
 SECTIONS = ("lenticular", "flat", "round")
@@ -74,8 +78,9 @@ class Family:
     """The rows of one family table, as measured; every array has shape (rows,).
 
     ``measured`` maps each name of :data:`MEASURED` to an array in mm, 1/mm, tex, g/cm3 or
-    (crimp) a plain ratio, NaN where the cell was empty. ``table[name]`` is the table of
-    that one row, ``len(table)`` the number of rows.
+    (crimp) a plain ratio, NaN where the cell was empty; ``scatter`` maps the same names to
+    the standard deviations of the ``*_std`` columns, in the same units. ``table[name]`` is
+    the table of that one row, ``len(table)`` the number of rows.
     """
 
     family: str
@@ -84,6 +89,7 @@ class Family:
     lines: tuple[int, ...]
     weaves: tuple[Weave, ...]
     measured: dict[str, np.ndarray]
+    scatter: dict[str, np.ndarray]
     sections: tuple[str, ...]
     thicker: tuple[str, ...]
     sources: tuple[str, ...]
@@ -98,24 +104,27 @@ class Family:
             at = self.names.index(name)
         except ValueError:
             raise KeyError(name) from None
-        one = slice(at, at + 1)
-        return Family(
-            self.family,
-            self.path,
-            self.names[one],
-            self.lines[one],
-            self.weaves[one],
-            {column: values[one] for column, values in self.measured.items()},
-            self.sections[one],
-            self.thicker[one],
-            self.sources[one],
-            self.notes[one],
-        )
+        return self.take([at])
+
+    def take(self, rows: Sequence[int]) -> Family:
+        """The table of the rows with these numbers, in this order."""
+
+        def taken(value):
+            if isinstance(value, dict):
+                return {column: values[rows] for column, values in value.items()}
+            return tuple(value[at] for at in rows) if isinstance(value, tuple) else value
+
+        return Family(**{each.name: taken(getattr(self, each.name)) for each in fields(self)})
 
     @property
     def balanced(self) -> np.ndarray:
         """Boolean (rows,): True where every warp cell is empty."""
         return np.all([np.isnan(self.measured[f"warp_{q}"]) for q in _PER_DIRECTION], axis=0)
+
+    @property
+    def scattered(self) -> np.ndarray:
+        """Boolean (rows,): True where any standard deviation is given."""
+        return ~np.all([np.isnan(values) for values in self.scatter.values()], axis=0)
 
     def problem(self, at: int, column: str, message: str) -> Problem:
         """A :class:`Problem` placed at a column of row number ``at``."""
@@ -209,6 +218,7 @@ class _TableReader:
             lines=tuple(row["line"] for row in rows),
             weaves=tuple(weave_of(self.family, row) for row in rows),
             measured=measured,
+            scatter={column: np.array([row[std] for row in rows], dtype=float) for column, std in zip(MEASURED, _STD)},
             sections=tuple(row["section"] or "lenticular" for row in rows),
             thicker=tuple(row["thicker"] for row in rows),
             sources=tuple(row["source"] for row in rows),
@@ -254,7 +264,7 @@ class _TableReader:
     def check_header(self, line: int, header: list[str]) -> None:
         while header and not header[-1]:
             header.pop()
-        known = [*TEXTS, *self.whole, *MEASURED, *_OTHER_UNITS]
+        known = [*TEXTS, *self.whole, *MEASURED, *_STD, *_OTHER_UNITS]
         for column in header:
             if column in known:
                 if header.count(column) > 1:
@@ -283,7 +293,7 @@ class _TableReader:
             hint = " (a decimal comma needs ';' as the separator)" if self.separator == "," else ""
             self.wrong(f"{len(cells)} cells where the header has {len(header)}{hint}", line, row=name)
             return None
-        row = dict.fromkeys(MEASURED, math.nan) | dict.fromkeys(TEXTS, "")
+        row = dict.fromkeys((*MEASURED, *_STD), math.nan) | dict.fromkeys(TEXTS, "")
         row["line"] = line
         row |= {column: texts[column] for column in TEXTS if column in texts}
         before = len(self.problems)
@@ -303,7 +313,9 @@ class _TableReader:
         if row["thicker"] not in ("", *DIRECTIONS):
             self.wrong(f"{row['thicker']!r} is none of {', '.join(DIRECTIONS)}", line, "thicker", name)
         self.check_weave(row, line, name)
-        self.check_geometry(row, {column for column, text in texts.items() if text}, line, name)
+        filled = {column for column, text in texts.items() if text}
+        self.check_scatter([column for column in header if column in filled & _STD_WRITTEN], filled, line, name)
+        self.check_geometry(row, filled, line, name)
         return row if len(self.problems) == before else None
 
     def check_name(self, name: str, line: int) -> None:
@@ -332,7 +344,8 @@ class _TableReader:
             )
             return math.nan
         if not _NUMBER.fullmatch(text) or not math.isfinite(float(text)):
-            hint = f"; use the column {column}_percent" if text.endswith("%") and column.endswith("crimp") else ""
+            percent = re.sub(r"crimp(_std)?$", r"crimp_percent\1", column)
+            hint = f"; use the column {percent}" if text.endswith("%") and percent != column else ""
             self.wrong(f"{text!r} is not a number{hint}", line, column, name)
             return math.nan
         value = float(text)
@@ -386,6 +399,14 @@ class _TableReader:
             self.wrong(f"{step} is not below the harness {harness}", line, "step", name)
         elif math.gcd(harness, step) != 1:
             self.wrong(f"{step} is not coprime to the harness {harness}", line, "step", name)
+
+    def check_scatter(self, given: list[str], filled: set[str], line: int, name: str) -> None:
+        """A standard deviation belongs to a measured value; ``given`` are the columns that hold one."""
+        filled = {_OTHER_UNITS.get(column, (column, 1.0))[0] for column in filled}
+        for column in given:
+            if _OTHER_UNITS.get(column, (column, 1.0))[0].removesuffix("_std") not in filled:
+                message = f"a standard deviation without its value; {column.removesuffix('_std')} is empty"
+                self.wrong(message, line, column, name)
 
     def check_geometry(self, row: dict, filled: set[str], line: int, name: str) -> None:
         """Bounds between cells of one row that need no model; ``filled`` names its columns with a text."""
