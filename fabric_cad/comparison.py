@@ -192,24 +192,35 @@ class Comparison:
         return self.void_volume / self.crossing_area
 
 
-def crossing_gap(
+def crossing_heights(
     fabric: SolvedFabric, model: Model, weft: Yarn, warp: Yarn, v_weft: np.ndarray, v_warp: np.ndarray
-) -> np.ndarray:
-    """Gap (mm) over one crossing, shape (len(v_warp), len(v_weft)): first axis along x, second along y.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Bottom and top of the lower yarn, then of the upper, over one crossing (mm).
 
-    ``v_warp`` are distances from the warp's axis (along x), ``v_weft`` from the weft's (along y), mm.
+    ``v_warp`` are distances from the warp's axis (along x), ``v_weft`` from the weft's (along
+    y), mm; each array has the shape (len(v_warp), len(v_weft)).
     """
     x = (warp.index + 0.5) * fabric.weft.crossed_spacing + v_warp
     y = (weft.index + 0.5) * fabric.warp.crossed_spacing + v_weft
-    weft_bottom, weft_top = model.heights(fabric, weft, x, v_weft)
-    warp_bottom, warp_top = (z.T for z in model.heights(fabric, warp, y, v_warp))
-    return weft_bottom - warp_top if weft.high[warp.index] else warp_bottom - weft_top
+    along_x = model.heights(fabric, weft, x, v_weft)
+    along_y = tuple(z.T for z in model.heights(fabric, warp, y, v_warp))
+    return (*along_y, *along_x) if weft.high[warp.index] else (*along_x, *along_y)
+
+
+def crossing_gap(
+    fabric: SolvedFabric, model: Model, weft: Yarn, warp: Yarn, v_weft: np.ndarray, v_warp: np.ndarray
+) -> np.ndarray:
+    """Upper yarn's bottom minus lower yarn's top (mm) over one crossing, as :func:`crossing_heights`."""
+    _, low, high, _ = crossing_heights(fabric, model, weft, warp, v_weft, v_warp)
+    return high - low
 
 
 def measure(fabric: SolvedFabric, model: Model, points: int = POINTS, tolerance: float | None = None) -> Comparison:
     """Measure one model on ``points`` x ``points`` places of every crossing.
 
-    ``tolerance`` (mm) tells contact; by default :data:`TOLERANCE` of the thinner yarn. Raises
+    Penetration is how far the facing sides have passed each other; the overlap counts only
+    what lies in both yarns, which is less where one of them is thin. ``tolerance`` (mm)
+    tells contact; by default :data:`TOLERANCE` of the thinner yarn. Raises
     :class:`BuildError` where the model cannot make this fabric's yarns.
     """
     if tolerance is None:
@@ -218,9 +229,10 @@ def measure(fabric: SolvedFabric, model: Model, points: int = POINTS, tolerance:
     areas = np.outer(d_warp, d_weft)
     deepest = overlap = void = touching = total = 0.0
     for weft, warp in crossings(fabric):
-        gap = crossing_gap(fabric, model, weft, warp, v_weft, v_warp)
+        bottom, low, high, top = crossing_heights(fabric, model, weft, warp, v_weft, v_warp)
+        gap, shared = high - low, np.minimum(low, top) - np.maximum(high, bottom)
         deepest = max(deepest, float(-gap.min()))
-        overlap += float(np.sum(np.maximum(-gap, 0.0) * areas))
+        overlap += float(np.sum(np.maximum(shared, 0.0) * areas))
         void += float(np.sum(np.maximum(gap, 0.0) * areas))
         touching += float(np.sum(areas[np.abs(gap) <= tolerance]))
         total += float(np.sum(areas))
@@ -228,7 +240,11 @@ def measure(fabric: SolvedFabric, model: Model, points: int = POINTS, tolerance:
 
 
 def compare(fabric: SolvedFabric, models: Sequence[Model] = MODELS, points: int = POINTS) -> tuple[Comparison, ...]:
-    """Measure every model on one identified fabric, as :func:`measure` does."""
+    """Measure every model on one identified fabric, as :func:`measure` does.
+
+    Raises :class:`BuildError` where one of them cannot be made; circular arcs have no room where
+    a yarn rises steeply over thin, wide ones. ``models`` may leave such out.
+    """
     return tuple(measure(fabric, model, points) for model in models)
 
 

@@ -164,6 +164,7 @@ def plot_gap_maps(fabric: SolvedFabric, axes, weft: int = 1, warp: int = 1):
     thinner = min(fabric.weft.thickness, fabric.warp.thickness)
     for ax, model in zip(axes, MODELS):
         gap = crossing_gap(fabric, model, *yarns, v, u).T
+        gap[np.abs(gap) < _UNSEEN] = 0.0
         drawn = ax.pcolormesh(u, v, gap, cmap="RdBu", vmin=-thinner / 4, vmax=thinner / 4, shading="gouraud")
         touching = np.pad(np.abs(gap[1:-1, 1:-1]) <= TOLERANCE * thinner, 1)
         ax.contour(u, v, touching, levels=[0.5], colors="black", linewidths=0.8)

@@ -161,6 +161,15 @@ def test_two_straight_lenses_touch_at_one_point(plain):
     assert found.contact_area == pytest.approx(4 * disc, rel=0.02)
 
 
+def test_yarns_in_one_plane_overlap_in_steinmetz_solids(plain):
+    # two elliptic cylinders at right angles share 16/3 r^3 (Steinmetz), scaled by b / c in height
+    model = Model("in one plane", constant_section(lambda u, solved, _: solved.amplitude / 2 + 0 * u, elliptic))
+    b, c = plain.weft.thickness, plain.weft.width
+    found = measure(plain, model)
+    assert found.overlap_volume == pytest.approx(4 * 16 / 3 * (c / 2) ** 2 * b / 2, rel=1e-3)
+    assert found.max_penetration == pytest.approx(b, rel=1e-3)
+
+
 def test_bars_penetrate_as_deep_as_a_chord_cuts_an_ellipse(plain):
     # over one half width: A u / a - b/2 (1 - sqrt(1 - (2 u / c)^2)) is largest where the ellipse has the bar's
     # slope; both yarns of a crossing in a plain weave do so at once
