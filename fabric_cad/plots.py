@@ -1,4 +1,4 @@
-"""Sections, trajectories and cuts of a solved fabric, as the paper's Fig. 15 to 18 draw them.
+"""Sections, trajectories and cuts of a solved fabric, as the paper's Fig. 15 to 18 draw them, and its models compared.
 
 Each function draws on Matplotlib axes it is given; lengths mm.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import BSpline
 
+from .comparison import MODELS, TOLERANCE, Model, crossing_gap
 from .sections import KINDS, Section, contact_section, free_section
 from .solved import SolvedFabric, point_columns
 from .splines import Spline
@@ -15,7 +16,10 @@ from .sweeps import control_planes, control_sections, trajectory
 from .weaves import DIRECTIONS, Yarn, yarns_of
 
 _POINTS = 41
+_ACROSS = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 301)) / 2  # of a width, closer towards the edges
 _COLOURS = {"weft": "#e0862f", "warp": "#3f74a8"}
+_PENETRATION = "#d1001f"
+_UNSEEN = 1e-9  # mm, less than any picture shows
 
 # strips of a section in the order in which they follow each other, and which are run backwards
 _AROUND = (
@@ -143,3 +147,54 @@ def _on_axis(section: Section, side: str) -> float:
     v, z = section_outline(Section({side: section.strips[side]}), 201)
     order = np.argsort(v, kind="stable")
     return float(np.interp(0.0, v[order], z[order]))
+
+
+def plot_model_cuts(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 1, stretch: float = 3.0) -> None:
+    """The same cut along a yarn's axis for every model of :data:`fabric_cad.comparison.MODELS`, one each on ``axes``.
+
+    Penetrations are red, voids white; z is drawn ``stretch`` times larger.
+    """
+    for ax, model in zip(axes, MODELS):
+        _model_cut(fabric, model, ax, direction, number)
+        ax.set_title(model.title, loc="left", fontsize="medium")
+        ax.margins(x=0)
+        ax.set(aspect=stretch, ylabel="z mm")
+    axes[-1].set_xlabel("x mm" if direction == "weft" else "y mm")
+
+
+def _model_cut(fabric: SolvedFabric, model: Model, axes, direction: str, number: int) -> None:
+    yarn, solved = _yarn(fabric, direction, number), fabric.directions[direction]
+    along = np.linspace(0.0, len(yarn.high) * solved.crossed_spacing, 50 * len(yarn.high) + 1)
+    bottom, top = (z[:, 0] for z in model.heights(fabric, yarn, along, np.zeros(1)))
+    axes.fill_between(along, bottom, top, color=_COLOURS[direction], alpha=0.6, linewidth=0)
+    crossed_direction = DIRECTIONS[1 - DIRECTIONS.index(direction)]
+    v = fabric.directions[crossed_direction].width * _ACROSS
+    here = np.array([(yarn.index + 0.5) * fabric.directions[crossed_direction].crossed_spacing])
+    for k, high in enumerate(yarn.high):
+        place = (k + 0.5) * solved.crossed_spacing + v
+        under, over = (z[0] for z in model.heights(fabric, _yarn(fabric, crossed_direction, k + 1), here, v))
+        axes.fill_between(place, under, over, color=_COLOURS[crossed_direction], alpha=0.9, linewidth=0)
+        own_bottom, own_top = (z[:, 0] for z in model.heights(fabric, yarn, place, np.zeros(1)))
+        low, above = (own_bottom, over) if high else (under, own_top)
+        axes.fill_between(place, low, above, where=above > low + _UNSEEN, color=_PENETRATION, linewidth=0)
+
+
+def plot_gap_maps(fabric: SolvedFabric, axes, weft: int = 1, warp: int = 1):
+    """The gap over one crossing for every model of :data:`fabric_cad.comparison.MODELS`, one each on ``axes``.
+
+    Penetrations are red, voids blue; a line goes around where the yarns touch. Returns the last
+    map, for a colour bar; the colours end at a quarter of the thinner yarn's thickness.
+    """
+    yarns = _yarn(fabric, "weft", weft), _yarn(fabric, "warp", warp)
+    v, u = (way.width * _ACROSS for way in (fabric.weft, fabric.warp))
+    thinner = min(fabric.weft.thickness, fabric.warp.thickness)
+    for ax, model in zip(axes, MODELS):
+        gap = crossing_gap(fabric, model, *yarns, v, u).T
+        gap[np.abs(gap) < _UNSEEN] = 0.0
+        drawn = ax.pcolormesh(u, v, gap, cmap="RdBu", vmin=-thinner / 4, vmax=thinner / 4, shading="gouraud")
+        touching = np.pad(np.abs(gap[1:-1, 1:-1]) <= TOLERANCE * thinner, 1)
+        ax.contour(u, v, touching, levels=[0.5], colors="black", linewidths=0.8)
+        ax.set(aspect="equal", xlabel="x from the centre, mm", ylabel="y from the centre, mm")
+        ax.set_title(model.title, fontsize="medium")
+        ax.label_outer()
+    return drawn
