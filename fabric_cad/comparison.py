@@ -295,7 +295,7 @@ def yarn_volume(fabric: SolvedFabric, model: Model) -> float:
     volume = 0.0
     for yarn in yarns_of(fabric.weave.interlacement()):
         half_width = fabric.directions[yarn.direction].width / 2
-        planes = np.array(control_planes(fabric, yarn.direction))
+        planes = np.array([plane.place for plane in control_planes(fabric, yarn)])
         t, dt = _gauss(planes, 4)
         angle, d_angle = _gauss(np.array([-np.pi / 2, 0.0, np.pi / 2]), 24)
         bottom, top = model.heights(fabric, yarn, t, half_width * np.sin(angle))

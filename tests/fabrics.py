@@ -68,6 +68,43 @@ def _thickness(rng: np.random.Generator, family: str, row: dict) -> dict:
     return {kind: total * float(rng.uniform(0.35, 0.65))}
 
 
+def random_general_row(rng: np.random.Generator, name: str = "general", form: str = "") -> tuple[str, dict]:
+    """The same with contact chords of 0.6 to 1 of the width, offsets to 0.2 of the half chord, and
+    all three lateral forms (round ones with chords from 0.93, below which few arcs fit)."""
+    family, row = random_row(rng, name)
+    form = form or str(rng.choice(["lenticular", "flat", "round"]))
+    row = {column: value for column, value in row.items() if column not in ("section", "lateral_height_mm")}
+    row["section"] = form
+    if form == "flat":
+        row["lateral_height_mm"] = 0.01 * row["weft_width_mm"]
+    for direction in ("weft", "warp"):
+        if f"{direction}_width_mm" not in row:
+            continue
+        width = row[f"{direction}_width_mm"]
+        for side in ("top", "bottom"):
+            share = float(rng.uniform(0.93, 0.99) if form == "round" else rng.uniform(0.6, 1.0))
+            row[f"{direction}_contact_{side}_mm"] = share * width
+            if rng.random() < 0.5:
+                row[f"{direction}_offset_{side}_mm"] = float(rng.uniform(0.0, 0.2)) * share * width / 2
+    return family, row
+
+
+def skin_of(fabric, yarn):
+    """The skin of one yarn of a fabric."""
+    from fabric_cad.sweeps import control_planes, control_sections, skin, trajectory
+
+    planes = control_planes(fabric, yarn)
+    return skin(trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes))
+
+
+def section_area(section) -> float:
+    """Area of a section, mm2, by Green's theorem along its outline (exact for parabolas)."""
+    from fabric_cad.plots import section_outline
+
+    v, z = section_outline(section, 4001)
+    return float(np.sum(v[:-1] * z[1:] - v[1:] * z[:-1]) / 2)
+
+
 TWILL32 = {
     "name": "twill32",
     "over": 3,

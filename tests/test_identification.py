@@ -4,7 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from fabrics import TWILL32, UNBALANCED, random_row, table
+from fabrics import TWILL32, UNBALANCED, random_general_row, random_row, table
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -15,9 +15,9 @@ from fabric_cad.lengths import excess_length
 seeds = st.integers(0, 2**32 - 1)
 
 
-def identified(seed):
+def identified(seed, draw=random_row):
     """(measured row, solved row, fabric) of a random fabric, or none where it is refused."""
-    family, row = random_row(np.random.default_rng(seed))
+    family, row = draw(np.random.default_rng(seed))
     measured = table(family, row)
     try:
         solved = identify(measured)
@@ -65,10 +65,11 @@ def test_the_relations_of_the_paper_hold(seed):
         assert excess_length(d.slope, other.width, gap) == pytest.approx(d.crimp * projected, rel=1e-11)
 
 
-@given(seeds)
+@pytest.mark.parametrize("draw", [random_row, random_general_row])
+@given(seed=seeds)
 @settings(max_examples=40, deadline=None)
-def test_control_points_lie_on_the_conics(seed):
-    _, row, fabric = identified(seed)
+def test_control_points_lie_on_the_conics(draw, seed):
+    _, row, fabric = identified(seed, draw)
     for d, (first, second) in ((fabric.weft, ("p11", "p12")), (fabric.warp, ("p21", "p22"))):
         (x1, z1), (x2, z2), (x3, z3), (x4, z4), (x5, z5), (x6, z6) = d.points
         p1, p2 = row[first], row[second]
@@ -201,3 +202,70 @@ def test_all_refusals_of_a_table_are_listed():
     with pytest.raises(InputError) as refused:
         identify(table("plain", *rows))
     assert [problem.row for problem in refused.value.problems] == ["r0", "r2"]
+
+
+@given(seeds)
+@settings(max_examples=60, deadline=None)
+def test_the_general_trajectory(seed):
+    """(A.1)-(A.12), (A.25)-(A.29) with chords and offsets of their own on top and bottom."""
+    given_row, _, fabric = identified(seed, random_general_row)
+    balanced = not any(column.startswith("warp_") for column in given_row)
+    for name, other in (("weft", "warp"), ("warp", "weft")):
+        source = "weft" if balanced else other
+        width = given_row[f"{source}_width_mm"]
+        chord = {side: given_row.get(f"{source}_contact_{side}_mm", width) for side in ("top", "bottom")}
+        offset = {side: given_row.get(f"{source}_offset_{side}_mm", 0.0) for side in ("top", "bottom")}
+        d = fabric.directions[name]
+        a, (low, high) = d.crossed_spacing, fabric.weave.floats(name)
+        # the weft starts low, under the bottom of its warps; the warp high, on the top of its wefts
+        first, second = ("bottom", "top") if name == "weft" else ("top", "bottom")
+        start = low if name == "weft" else high
+        x1, x2, x3, x4, x5, x6 = (x for x, _ in d.points)
+        assert x2 == pytest.approx((start - 1) / 2 * a + offset[first])  # (A.9), (A.10)
+        assert x3 == pytest.approx((start - 1) / 2 * a + chord[first] / 2)  # (A.5), (A.6)
+        assert x4 == pytest.approx((start + 1) / 2 * a - chord[second] / 2)  # (A.7), (A.8)
+        assert x5 == pytest.approx((start + 1) / 2 * a - offset[second])  # (A.3), (A.4)
+        u_first, u_second, gap = x3 - x2, x5 - x4, x4 - x3
+        p_first, p_second = (d.p_low, d.p_high) if name == "weft" else (d.p_high, d.p_low)
+        assert p_second == pytest.approx(p_first * u_first / u_second)  # (A.25), (A.26)
+        assert d.slope == pytest.approx(2 * p_first * u_first)
+        assert d.amplitude == pytest.approx(d.slope * (u_first / 2 + gap + u_second / 2))  # (A.27)-(A.29)
+        excess = excess_length(d.slope, u_first + u_second, gap)
+        assert excess == pytest.approx(d.crimp * (low + high) / 2 * a, rel=1e-9)  # (A.11), (A.12)
+
+
+@pytest.mark.parametrize(
+    ("cells", "parameters"),
+    [
+        ({}, 3),
+        ({"weft_contact_top_mm": 2.3}, 4),
+        ({"weft_contact_top_mm": 2.3, "weft_offset_top_mm": 0.1}, 6),
+        ({"weft_contact_top_mm": 2.3, "weft_contact_bottom_mm": 2.3, "section": "round"}, 9),
+    ],
+)
+def test_number_of_parameters(cells, parameters):
+    assert identify(table("twill", TWILL32 | cells)).row("twill32")["parameters"] == parameters
+    warp = {"warp_density_per_mm": 0.35, "warp_width_mm": 2.4, "warp_crimp": 0.004, "weft_thickness_mm": 0.36}
+    warp |= {column.replace("weft", "warp"): value for column, value in cells.items()}
+    both = identify(table("twill", TWILL32 | cells | warp)).row("twill32")
+    assert both["parameters"] == {3: 7, 4: 8, 6: 12, 9: 18}[parameters]
+
+
+@pytest.mark.parametrize(
+    ("cells", "column", "words"),
+    [
+        ({"weft_contact_top_mm": 2.5}, "weft_contact_top_mm", "2.5 is above the weft width 2.4 mm"),
+        ({"weft_offset_top_mm": 1.3}, "weft_offset_top_mm", "1.3 is not below half the contact chord, 1.2 mm"),
+        ({"section": "round"}, "weft_contact_top_mm", "needs a contact chord below its width 2.4 mm"),
+        (
+            {"section": "round", "weft_contact_top_mm": 2.0, "weft_contact_bottom_mm": 2.35},
+            "weft_contact_top_mm",
+            "a chord of 2 mm leaves arcs",
+        ),
+    ],
+)
+def test_contacts_that_do_not_fit_are_refused(cells, column, words):
+    with pytest.raises(InputError) as refused:
+        identify(table("twill", TWILL32 | cells))
+    problem = refused.value.problems[0]
+    assert problem.column == column and words in problem.message

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fabrics import TWILL32, table
+from fabrics import TWILL32, skin_of, table
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -12,7 +12,6 @@ from fabric_cad.identification import identify
 from fabric_cad.lengths import excess_length
 from fabric_cad.patterns import read_pattern, written
 from fabric_cad.solved import read_solved
-from fabric_cad.sweeps import control_planes, control_sections, skin, trajectory
 from fabric_cad.tables import MOST_YARNS, read_families, read_family
 from fabric_cad.weaves import FAMILIES, Weave, pattern_faults, yarns_of
 
@@ -112,11 +111,8 @@ def test_a_twill_spelt_as_a_pattern_is_the_twill():
     yarns = [yarns_of(fabric.weave.interlacement()) for fabric in (one, other)]
     assert yarns[0] == yarns[1]
     for yarn in yarns[0]:
-        first, second = (
-            skin(trajectory(fabric, yarn, control_planes(fabric, yarn.direction)), control_sections(fabric, yarn))
-            for fabric in (one, other)
-        )
-        assert all(np.array_equal(a.z, b.z) for a, b in zip(first.patches, second.patches, strict=True))
+        first, second = (skin_of(fabric, yarn) for fabric in (one, other))
+        assert all(np.array_equal(a.poles, b.poles) for a, b in zip(first.patches, second.patches, strict=True))
 
 
 @st.composite

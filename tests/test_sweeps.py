@@ -2,120 +2,143 @@
 
 import numpy as np
 import pytest
-from fabrics import TWILL32, random_row, table
+from fabrics import TWILL32, random_general_row, random_row, skin_of, table
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from fabric_cad.errors import InputError
 from fabric_cad.identification import identify
-from fabric_cad.sweeps import control_planes, control_sections, skin, trajectory
+from fabric_cad.plots import section_outline
+from fabric_cad.sweeps import contact_segment, control_planes, control_sections, trajectory
 from fabric_cad.weaves import Weave, yarns_of
 
 seeds = st.integers(0, 2**32 - 1)
+rows = pytest.mark.parametrize("draw", [random_row, random_general_row])
 
 
-def fabric_of(seed):
-    family, row = random_row(np.random.default_rng(seed))
+def fabric_of(draw, seed):
+    family, row = draw(np.random.default_rng(seed))
     try:
         return identify(table(family, row))[row["name"]]
     except InputError:
         assume(False)
 
 
-def skins(fabric):
-    """Yarn name to (yarn, skin)."""
-    found = {}
-    for yarn in yarns_of(fabric.weave.interlacement()):
-        path = trajectory(fabric, yarn, control_planes(fabric, yarn.direction))
-        found[yarn.name] = yarn, skin(path, control_sections(fabric, yarn))
-    return found
+def points(patch, u, v, along=0):
+    """Points (t, v, z) of a patch on a grid of shares of its parameters, or their rate along t."""
+    homogeneous = patch.poles * np.where(np.arange(4) < 3, patch.poles[..., 3:], 1.0)
+    (ku, du), (kv, dv) = patch.along, patch.across
+    at = ku[0] + np.asarray(u) * (ku[-1] - ku[0])
+
+    def grid(order):
+        return BSpline(kv, BSpline(ku, homogeneous, du)(at, order).transpose(1, 0, 2), dv)(v).transpose(1, 0, 2)
+
+    found = grid(0)
+    place = found[..., :3] / found[..., 3:]
+    if not along:
+        return place
+    rate = grid(1)
+    tangent = (rate[..., :3] - place * rate[..., 3:]) / found[..., 3:]
+    return tangent / tangent[..., :1]
 
 
-def height(patch, t, v, along=0, across=0):
-    """z, or a derivative of it, of a patch at the grid of t (along) and v (across the axis)."""
-    first = BSpline(patch.along.knots, patch.z, patch.along.degree)(t, along)
-    return BSpline(patch.across.knots, first.T, patch.across.degree)(v, across).T
+def patch_of(surface, segment, side):
+    return next(patch for patch in surface.patches if (patch.segment, patch.side) == (segment, side))
 
 
-def patches(surface, side):
-    return [patch for patch in surface.patches if patch.side == side]
-
-
-@given(seeds)
+@rows
+@given(seed=seeds)
 @settings(max_examples=25, deadline=None)
-def test_contact_faces_coincide(seed):
-    fabric = fabric_of(seed)
-    yarns = skins(fabric)
+def test_contact_faces_coincide(draw, seed):
+    fabric = fabric_of(draw, seed)
+    yarns = yarns_of(fabric.weave.interlacement())
     over = fabric.weave.interlacement()
-    scale = fabric.fabric_thickness
     rng = np.random.default_rng(seed)
-    for i, j in rng.integers(0, fabric.weave.wefts, (6, 2)):
-        (_, weft), (_, warp) = yarns[f"weft_{i + 1}"], yarns[f"warp_{j + 1}"]
-        x = warp.axis + np.linspace(-0.5, 0.5, 9) * fabric.warp.width
-        y = weft.axis + np.linspace(-0.5, 0.5, 9) * fabric.weft.width
-        sides = ("bottom", "top") if over[i, j] else ("top", "bottom")
-        z_weft = height(patches(weft, sides[0])[3 * j + 1], x, y - weft.axis)
-        z_warp = height(patches(warp, sides[1])[3 * i + 1], y, x - warp.axis).T
-        assert np.max(np.abs(z_weft - z_warp)) < 1e-12 * max(scale, 1)
+    share = np.linspace(0, 1, 9)
+    for _ in range(4):
+        i, j = rng.integers(0, fabric.weave.wefts), rng.integers(0, fabric.weave.warps)
+        weft, warp = yarns[i], yarns[fabric.weave.wefts + j]
+        found = []
+        for yarn, crossing, side in (
+            (weft, j, "bottom" if over[i, j] else "top"),
+            (warp, i, "top" if over[i, j] else "bottom"),
+        ):
+            surface = skin_of(fabric, yarn)
+            patch = patch_of(surface, contact_segment(surface.planes, crossing), side)
+            place = points(patch, share, share)
+            place[..., 1] += surface.axis
+            found.append(place if yarn is weft else place[..., [1, 0, 2]].transpose(1, 0, 2))
+        assert found[0] == pytest.approx(found[1], abs=1e-12 * max(1, *fabric.period))
 
 
-@given(seeds)
+@rows
+@given(seed=seeds)
 @settings(max_examples=25, deadline=None)
-def test_neighbouring_faces_have_common_points_and_tangents(seed):
-    fabric = fabric_of(seed)
-    for name in ("weft_1", f"warp_{fabric.weave.wefts}"):
-        yarn, surface = skins(fabric)[name]
-        width = fabric.directions[yarn.direction].width
-        v = np.linspace(-width / 2, width / 2, 11)
-        for side in ("top", "bottom"):
-            strip = patches(surface, side)
-            for first, second in zip(strip, strip[1:]):
-                plane = first.along.knots[-1]
-                assert second.along.knots[0] == plane
-                for derivative in (0, 1):
-                    ends = [height(patch, plane, v, along=derivative) for patch in (first, second)]
-                    assert ends[0] == pytest.approx(ends[1], abs=1e-12)
+def test_neighbouring_faces_have_common_points_and_tangents(draw, seed):
+    fabric = fabric_of(draw, seed)
+    yarns = yarns_of(fabric.weave.interlacement())
+    share = np.linspace(0, 1, 7)
+    for yarn in (yarns[0], yarns[-1]):
+        surface = skin_of(fabric, yarn)
+        segments = len(surface.planes) - 1
+        for side in {patch.side for patch in surface.patches}:
+            strip = [patch_of(surface, segment, side) for segment in range(segments)]
+            shift = np.array([surface.planes[-1].place, 0.0, 0.0])
+            for first, second, moved in [
+                *((a, b, 0.0) for a, b in zip(strip, strip[1:])),
+                (strip[-1], strip[0], shift),
+            ]:
+                assert points(first, [1.0], share) == pytest.approx(points(second, [0.0], share) + moved, abs=1e-11)
+                ends = points(first, [1.0], share, along=1), points(second, [0.0], share, along=1)
+                assert ends[0] == pytest.approx(ends[1], abs=1e-9)
 
 
-@given(seeds)
+@rows
+@given(seed=seeds)
 @settings(max_examples=25, deadline=None)
-def test_sections_fill_their_envelope_and_nothing_else(seed):
-    fabric = fabric_of(seed)
-    for yarn in yarns_of(fabric.weave.interlacement())[:: fabric.weave.wefts]:
+def test_sections_fill_their_envelope_and_nothing_else(draw, seed):
+    fabric = fabric_of(draw, seed)
+    yarns = yarns_of(fabric.weave.interlacement())
+    for yarn in (yarns[0], yarns[-1]):
         solved = fabric.directions[yarn.direction]
-        v = np.linspace(-solved.width / 2, solved.width / 2, 2001)
-        knots = np.repeat([-solved.width / 2, 0, solved.width / 2], (3, 1, 3))
-        for section in control_sections(fabric, yarn):
-            top, bottom = (BSpline(knots, poles, 2)(v) for poles in (section.top, section.bottom))
-            assert top.max() == pytest.approx(solved.thickness / 2, rel=1e-6)
-            assert bottom.min() == pytest.approx(-solved.thickness / 2, rel=1e-6)
-            # lenticular edges close, flat ones keep their height, the sides never cross
-            assert (top - bottom)[[0, -1]] == pytest.approx(fabric.lateral_height, abs=1e-12)
-            assert (top - bottom)[1:-1].min() > fabric.lateral_height - 1e-12
+        for section in control_sections(fabric, yarn, control_planes(fabric, yarn)):
+            v, z = section_outline(section, 801)
+            assert (v.min(), v.max()) == pytest.approx((-solved.width / 2, solved.width / 2), rel=1e-9)
+            assert (z.min(), z.max()) == pytest.approx((-solved.thickness / 2, solved.thickness / 2), rel=1e-5)
+            assert np.sum(v[:-1] * z[1:] - v[1:] * z[:-1]) > 0  # counter-clockwise
             assert section.pointed == (fabric.section == "lenticular")
+            assert section.rounded == (fabric.section == "round")
+            if fabric.section == "flat":
+                for side in ("left", "right"):
+                    assert np.ptp(section.strips[side].poles[:, 1]) == pytest.approx(fabric.lateral_height)
 
 
 @given(seeds)
-@settings(max_examples=15, deadline=None)
-def test_the_cell_repeats(seed):
-    fabric = fabric_of(seed)
-    for yarn, surface in skins(fabric).values():
-        v = np.linspace(-0.5, 0.5, 5) * fabric.directions[yarn.direction].width
-        for side in ("top", "bottom"):
-            first, *_, last = patches(surface, side)
-            start, end = first.along.knots[0], last.along.knots[-1]
-            for derivative in (0, 1):
-                assert height(first, start, v, along=derivative) == pytest.approx(
-                    height(last, end, v, along=derivative), abs=1e-12
-                )
+@settings(max_examples=40, deadline=None)
+def test_round_sections_are_smooth_all_around(seed):
+    fabric = fabric_of(lambda rng: random_general_row(rng, form="round"), seed)
+    yarns = yarns_of(fabric.weave.interlacement())
+    joints = [("bottom", "right_lower"), ("left_lower", "bottom"), ("top", "right_upper"), ("left_upper", "top")]
+    for yarn in (yarns[0], yarns[-1]):
+        for section in control_sections(fabric, yarn, control_planes(fabric, yarn)):
+            for before, after in joints:
+                first, second = section.strips[before].poles, section.strips[after].poles
+                assert first[-1, :2] == pytest.approx(second[0, :2], abs=1e-12)
+                tangents = first[-1, :2] - first[-2, :2], second[1, :2] - second[0, :2]
+                (a, b), (c, d) = (tangent / np.linalg.norm(tangent) for tangent in tangents)
+                assert abs(a * d - b * c) < 1e-6
+            for side in ("right_lower", "left_lower", "right_upper", "left_upper"):  # vertical at the edge
+                poles = section.strips[side].poles
+                edge = poles[[-1, -2]] if side.startswith("right") else poles[[0, 1]]
+                assert edge[0, 0] == pytest.approx(edge[1, 0], abs=1e-12)
 
 
 def test_the_trajectory_passes_the_control_points():
     fabric = identify(table("twill", TWILL32))["twill32"]
     yarn = yarns_of(fabric.weave.interlacement())[0]  # over warps 1, 2, 3, under 4, 5
     assert yarn.high == (True, True, True, False, False)
-    path = trajectory(fabric, yarn, control_planes(fabric, "weft"))
+    path = trajectory(fabric, yarn, control_planes(fabric, yarn))
 
     def z(x):
         piece = next(p for p in path.pieces if p.knots[0] <= x <= p.knots[-1])
