@@ -1,7 +1,9 @@
 """Random fabrics through every stage, each in a child process with a time limit.
 
-``python tests/stability.py [COUNT] [--first SEED] [--workers N]``: every fabric must come out
-consistent or be refused for a reason its numbers give; anything else fails the run.
+``python tests/stability.py [COUNT] [--kind KIND] [--first SEED] [--workers N]``: every fabric must
+come out consistent or be refused for a reason its numbers give; anything else fails the run.
+Standard fabrics have contact over the whole width; general ones have chords, offsets and all
+three lateral forms.
 """
 
 from __future__ import annotations
@@ -46,15 +48,16 @@ class Outcome:
         return f"{self.seed:6d}  {self.kind:10}  {self.what}{quality}"
 
 
-def _child(seed: int, pipe) -> None:
-    from fabrics import random_row, table
+def _child(seed: int, kind: str, pipe) -> None:
+    from fabrics import random_general_row, random_row, table
 
     from fabric_cad.errors import InputError
     from fabric_cad.pipeline import Stages, make_cell
 
     reached = ["table"]
     try:
-        family, row = random_row(np.random.default_rng(seed), f"r{seed}")
+        draw = {"standard": random_row, "general": random_general_row}[kind]
+        family, row = draw(np.random.default_rng(seed), f"r{seed}")
         measured = table(family, row)
         with tempfile.TemporaryDirectory() as out:
             report = make_cell(measured, out, stages=Stages(lambda name, seconds: reached.append(name)))
@@ -71,13 +74,13 @@ def _child(seed: int, pipe) -> None:
         pipe.send(Outcome(seed, "failed", f"at {reached[-1]}: {type(error).__name__}: {error}"))
 
 
-def try_fabric(seed: int) -> Outcome:
+def try_fabric(seed: int, kind: str) -> Outcome:
     """One random fabric through the pipeline in a process of its own."""
     context = multiprocessing.get_context("forkserver" if sys.platform != "win32" else "spawn")
     if sys.platform != "win32":
         context.set_forkserver_preload(["fabric_cad.cad", "fabric_cad.masters.woven", "fabric_cad.views", "gmsh"])
     receive, send = context.Pipe(duplex=False)
-    process = context.Process(target=_child, args=(seed, send))
+    process = context.Process(target=_child, args=(seed, kind, send))
     process.start()
     send.close()
     outcome = None
@@ -96,20 +99,29 @@ def try_fabric(seed: int) -> Outcome:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("count", type=int, nargs="?", default=200)
+    parser.add_argument("--kind", choices=("standard", "general"), action="append", help="default: both")
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--workers", type=int, default=2)
     settings = parser.parse_args()
+    kinds = settings.kind or ["standard", "general"]
+    fine = [_run(kind, range(settings.first, settings.first + settings.count), settings.workers) for kind in kinds]
+    return 0 if all(fine) else 1
+
+
+def _run(kind: str, seeds: range, workers: int) -> bool:
+    """Try fabrics of one kind and print what became of them; True where all are fine."""
     start = time.perf_counter()
-    with ThreadPoolExecutor(settings.workers) as pool:
+    with ThreadPoolExecutor(workers) as pool:
         outcomes = []
-        for outcome in pool.map(try_fabric, range(settings.first, settings.first + settings.count)):
+        for outcome in pool.map(lambda seed: try_fabric(seed, kind), seeds):
             outcomes.append(outcome)
             print(outcome, flush=True)
-    kinds = Counter(outcome.kind for outcome in outcomes)
+    counts = Counter(outcome.kind for outcome in outcomes)
     poor = [outcome.seed for outcome in outcomes if not outcome.good_elements]
-    print(", ".join(f"{number} {kind}" for kind, number in kinds.items()), f"in {time.perf_counter() - start:.0f} s")
-    print(f"below the quality the edges allow: {poor or 'none'}")
-    return 0 if all(outcome.fine for outcome in outcomes) else 1
+    summary = ", ".join(f"{number} {what}" for what, number in counts.items())
+    print(f"{kind}: {summary} in {time.perf_counter() - start:.0f} s")
+    print(f"{kind}: below the quality the edges allow: {poor or 'none'}", flush=True)
+    return all(outcome.fine for outcome in outcomes)
 
 
 if __name__ == "__main__":
