@@ -29,6 +29,7 @@ Rectangle = tuple[float, float, float, float]
 """x from, x to, y from, y to, mm."""
 
 _PLAN = 1e-9  # mm, how far a face may be from a height field over a rectangle
+_VOLUME = 1e-9  # relative; without it OCCT takes fewer points than its own degree needs
 # Gauss-Lobatto on [0, 1], five points: exact to degree 7, ends included
 _NODES = (np.array([-1.0, -np.sqrt(3 / 7), 0.0, np.sqrt(3 / 7), 1.0]) + 1) / 2
 _WEIGHTS = np.array([1 / 20, 49 / 180, 16 / 45, 49 / 180, 1 / 20])
@@ -148,7 +149,7 @@ def inspect_cell(
         overlap_volume=float(found[:, 2].sum()),
         contact_area=float(found[:, 3].sum()),
         thickness=_highest(everything, 1.0) + _highest(everything, -1.0),
-        yarn_volumes={name: solid.Volume() for name, solid in solids.items()},
+        yarn_volumes={name: solid.Volume(_VOLUME) for name, solid in solids.items()},
     )
 
 
