@@ -25,7 +25,12 @@ _MESH = (
     ("size", float, "MM", "target element size in mm; numbers given below win over it"),
     ("across", int, "N", "elements across a weft, and along a warp's crossings (default 12)"),
     ("crossing", int, "N", "elements along a weft's crossings, and across a warp (default: as --across)"),
-    ("through", int, "N", "layers through the thickness, even for lenticular sections (default 2)"),
+    (
+        "through",
+        int,
+        "N",
+        "layers through the thickness, even for lenticular sections (default 2), from 4 for round ones (default 4)",
+    ),
     ("gap", int, "N", "elements along the gap between crossings, even (default 4)"),
 )
 

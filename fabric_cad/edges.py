@@ -22,11 +22,10 @@ _SAMPLES = 257
 def allowed_scaled_jacobian(fabric: SolvedFabric) -> float:
     """Smallest scaled Jacobian of the three tangents over all edge points of the cell.
 
-    1 for round sections, which have no edges.
+    A round section has no edge; its outermost line takes its place, where the tangents are
+    the line's, an upright and a horizontal.
     """
     worst = 1.0
-    if fabric.section == "round":
-        return worst
     known: set[bytes] = set()
     for yarn in yarns_of(fabric.weave.interlacement()):
         planes = control_planes(fabric, yarn)
@@ -50,7 +49,7 @@ def _edge(section: Section, level: str, end: int) -> tuple[float, float]:
     side = {"lower": "bottom", "upper": "top"}[level]
     poles = strips.get(f"{'left' if end == 0 else 'right'}_{level}", strips[side]).poles
     (v, z, _), (v_next, z_next, _) = (poles[0], poles[1]) if end == 0 else (poles[-1], poles[-2])
-    return z, (z_next - z) / (v_next - v)
+    return z, 0.0 if section.rounded else (z_next - z) / (v_next - v)
 
 
 def _worst_of(piece: Spline, first: Section, second: Section) -> float:

@@ -45,12 +45,7 @@ def section_outline(section: Section, points: int = _POINTS) -> tuple[np.ndarray
     curve = []
     for side, backwards in _AROUND:
         if side in section.strips:
-            strip = section.strips[side]
-            weights = strip.poles[:, 2:]
-            degree = 1 if len(strip.poles) == 2 else 2
-            homogeneous = np.hstack([strip.poles[:, :2] * weights, weights])
-            found = BSpline(strip.knots, homogeneous, degree)(np.linspace(0.0, 1.0, points))
-            found = found[:, :2] / found[:, 2:]
+            found = section.strips[side].at(np.linspace(0.0, 1.0, points))
             curve.append(found[::-1] if backwards else found)
     v, z = np.vstack([*curve, curve[0][:1]]).T
     return v, z

@@ -97,6 +97,14 @@ class Strip:
     knots: np.ndarray
     poles: np.ndarray
 
+    def at(self, shares: np.ndarray) -> np.ndarray:
+        """Points (v, z), shape (shares, 2), mm, at shares from 0 to 1 of the strip's parameter."""
+        from scipy.interpolate import BSpline
+
+        homogeneous = np.hstack([self.poles[:, :2] * self.poles[:, 2:], self.poles[:, 2:]])
+        found = BSpline(self.knots, homogeneous, 1 if len(self.poles) == 2 else 2)(shares)
+        return found[:, :2] / found[:, 2:]
+
 
 @dataclass(frozen=True, eq=False)
 class Section:

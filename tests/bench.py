@@ -71,12 +71,23 @@ def prepare(folder: Path) -> None:
         for direction in ("weft", "warp")
         for quantity in ("density_per_mm", "width_mm", "crimp")
     ]
-    rows = []
+    general = [
+        f"{d}_{q}_{side}_mm" for q in ("contact", "offset") for d in ("weft", "warp") for side in ("top", "bottom")
+    ]
+    rows, general_rows = [], []
     for k in range(10_000):
         weft = (0.35, 2.0 + 0.00005 * k, 0.001 + 1e-6 * k)
         warp = (0.33, 2.6 - 0.00005 * k, 0.006 - 4e-7 * k) if k % 2 else ("", "", "")
         rows.append((f"row{k}", 1 + k % 4, 1 + k % 3, *weft, *warp, 0.35 if k % 2 else ""))
-    write_table(folder / "families10000" / "twill.csv", [*columns, "weft_thickness_mm"], rows)
+        width = weft[1], warp[1] or weft[1]
+        chords = [0.97 * width[0], 0.95 * width[0], 0.96 * width[1], 0.94 * width[1]]
+        if not k % 2:
+            chords[2:] = ["", ""]
+        offsets = [0.05 if chord else "" for chord in chords]
+        general_rows.append((*rows[-1], *chords, *offsets, ("lenticular", "round")[k % 20 == 0]))
+    columns.append("weft_thickness_mm")
+    write_table(folder / "families10000" / "twill.csv", columns, rows)
+    write_table(folder / "families10000g" / "twill.csv", [*columns, *general, "section"], general_rows)
 
 
 def figures(folder: Path, runs: int):
@@ -102,6 +113,7 @@ def figures(folder: Path, runs: int):
     yield take("list", [*FABRIC_CAD, "list", "--families", str(ROOT / "families")], "0.5 s")
     solve = [*FABRIC_CAD, "solve", "-q", "--out", str(out), "--families"]
     yield take("solve, 10 000 rows", [*solve, str(folder / "families10000")], "2 s")
+    yield take("solve, 10 000 general rows", [*solve, str(folder / "families10000g")], "as fast")
     yield cell("twill32", "8 s, 1000 MB")
     yield cell("satin8", "15 s")
     yield cell("satin16", "4.5 x satin8", families=folder / "families16", repeat=1)

@@ -5,7 +5,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from fabric_cad.meshing.templates import flat_template, lenticular_template
+from fabric_cad.meshing.templates import flat_template, lenticular_template, round_template, worst_corner
 
 FLAT = [(1, 1), (4, 3), (8, 2)]
 POINTED = [(4, 2), (8, 2), (12, 2), (8, 4), (13, 4), (12, 6), (24, 8)]
@@ -54,3 +54,20 @@ def test_a_template_is_a_conforming_mesh_of_the_section(pointed, across, through
 def test_tips_that_do_not_fit(across, through):
     with pytest.raises(ValueError):
         lenticular_template(across, through)
+
+
+@pytest.mark.parametrize(("across", "through"), [(4, 2), (12, 2), (12, 4)])
+def test_a_ring_fits_a_smooth_outline(across, through):
+    """On an ellipse, which has no corner, no quadrilateral of the ring template is near flat."""
+    template = round_template(across, through, (0.12, 0.2))
+    corner = np.arctan2(0.5, 1.0)  # outline nodes at the angles of a box's corners and between them
+    ends = [-np.pi + corner, -corner, corner, np.pi - corner, np.pi + corner]
+    angles = np.concatenate(
+        [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(ends, ends[1:], [across, through] * 2)]
+    )
+    outline = np.column_stack([2 * np.cos(angles), np.sin(angles)])
+    nodes = np.vstack([outline, template.weights @ outline])
+    areas = area(nodes[template.quads])
+    assert areas.min() > 0 and areas.sum() == pytest.approx(area(outline))
+    assert len(template.quads) == across * through + 2 * (across + through)
+    assert worst_corner(template, outline) > 0.5

@@ -11,7 +11,7 @@ from ..solved import SolvedFabric
 from ..sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
 from ..weaves import Yarn
 from .options import MeshOptions
-from .templates import Template, flat_template, lenticular_template, round_template
+from .templates import Template, flat_template, lenticular_template, round_template, worst_corner
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,8 @@ def plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
     """Plan the mesh of one yarn so that its contact nodes will coincide with those of the yarns it crosses."""
     planes = control_planes(fabric, yarn)
     path = trajectory(fabric, yarn, planes)
-    surface = skin(path, control_sections(fabric, yarn, planes))
+    sections = control_sections(fabric, yarn, planes)
+    surface = skin(path, sections)
     frame, crossed = fabric.frame(yarn.direction), "warp" if yarn.direction == "weft" else "weft"
     across = {"weft": options.across, "warp": options.crossing}
     gap = np.linspace(0.0, 1.0, options.gap // 2 + 1)
@@ -58,7 +59,7 @@ def plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
         # along a crossing nodes lie as they do across the side of the crossed yarn that is touched
         columns = _columns(fabric.frame(crossed), "top" if high else "bottom", across[crossed])
         layers += [gap, *map(_shares, columns), gap]
-    template, strips = _outline(frame, across[yarn.direction], options.through)
+    template, strips = _outline(frame, sections, across[yarn.direction], options.through)
     contacts = [(contact_segment(planes, k), "bottom" if high else "top") for k, high in enumerate(yarn.high)]
     return Plan(
         yarn=yarn,
@@ -107,14 +108,15 @@ def _allotted(lengths: np.ndarray, across: int) -> list[int]:
     return [max(1, across - sum(pairs)), *pairs]
 
 
-def _outline(frame: Frame, across: int, through: int) -> tuple[Template, dict[str, tuple[np.ndarray, np.ndarray]]]:
+def _outline(
+    frame: Frame, sections, across: int, through: int
+) -> tuple[Template, dict[str, tuple[np.ndarray, np.ndarray]]]:
     """A section's template, and each strip's places in its outline with their shares of the strip."""
     columns = {side: _columns(frame, side, across) for side in ("bottom", "top")}
     upright = 0
     if frame.form == "round":
         upright = through - 2  # the template adds a layer below and above
-        chord = frame.splits["bottom"][0] + frame.splits["top"][0]
-        template = round_template(across, upright, (frame.width - chord) / chord)
+        template = round_template(across, upright, _INSETS[0])
     else:
         places = np.unique(np.concatenate(columns["bottom"]))
         across = len(places) - 1
@@ -131,7 +133,8 @@ def _outline(frame: Frame, across: int, through: int) -> tuple[Template, dict[st
         half = upright // 2
         slots = {"bottom": bottom, "top": top, "right_lower": right[: half + 1], "right_upper": right[half:][::-1]}
         slots |= {"left_lower": left[: half + 1][::-1], "left_upper": left[half:]}
-        return template, {side: (nodes, np.linspace(0.0, 1.0, len(nodes))) for side, nodes in slots.items()}
+        strips = {side: (nodes, np.linspace(0.0, 1.0, len(nodes))) for side, nodes in slots.items()}
+        return _best_ring(sections, strips, across, upright), strips
     strips = {}
     for side, level, nodes in (("bottom", "lower", bottom), ("top", "upper", top)):
         names = [f"left_{level}", side, f"right_{level}"] if len(columns[side]) == 3 else [side]
@@ -144,6 +147,23 @@ def _outline(frame: Frame, across: int, through: int) -> tuple[Template, dict[st
             name: (nodes, np.linspace(0.0, 1.0, through + 1)) for name, nodes in (("left", left), ("right", right))
         }
     return template, strips
+
+
+_INSETS = [(lateral, upright) for upright in (0.08, 0.12, 0.17, 0.22) for lateral in np.geomspace(0.002, 0.1, 14)]
+"""Thicknesses of a round section's ring to choose from, as shares of width and height."""
+
+
+def _best_ring(sections, strips: dict, across: int, upright: int) -> Template:
+    """The ring with which the worst corner over a yarn's control sections is the best."""
+    outlines = []
+    for section in {id(section): section for section in sections}.values():
+        outline = np.empty((2 * (across + upright), 2))
+        for side, (nodes, shares) in strips.items():
+            outline[nodes] = section.strips[side].at(shares)
+        outlines.append(outline)
+    templates = [round_template(across, upright, inset) for inset in _INSETS]
+    worst = [min(worst_corner(template, outline) for outline in outlines) for template in templates]
+    return templates[int(np.argmax(worst))]
 
 
 def _middles(surface: Skin, segments: int) -> tuple[tuple[list[str], np.ndarray], ...]:

@@ -25,6 +25,7 @@ where arcs and parabolas meet: an inner block is surrounded by one ring of quadr
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -79,18 +80,12 @@ def lenticular_template(across: int, through: int, near: float = 0.5) -> Templat
     return _template(outline, [core, *left, *(patch[::-1] for patch in right)])
 
 
-_RING = 0.5
-"""Thickness of the ring of a round section, in rows of the inner block."""
-
-_SLENDER = 1.3
-"""Thickness of the ring at the lateral zones over that at bottom and top: with it the edges that
-leave the smooth corners stand about upright on the outline."""
-
-
-def round_template(across: int, through: int, lateral: float) -> Template:
+@lru_cache(maxsize=256)
+def round_template(across: int, through: int, inset: tuple[float, float]) -> Template:
     """An inner block of ``across`` x ``through`` in a ring: through + 2 layers in all.
 
-    ``lateral`` is the height of the lateral zones as a share of the distance between them.
+    ``inset`` is the thickness of the ring at the lateral zones and at bottom and top, as
+    shares of the section's width and height.
     """
     outline = 2 * (across + through)
     node = np.eye(outline)
@@ -98,8 +93,6 @@ def round_template(across: int, through: int, lateral: float) -> Template:
     right = node[across : across + through + 1]
     top = node[across + through : 2 * across + through + 1][::-1]
     left = np.vstack([node[2 * across + through :], node[:1]])[::-1]
-    margin = _RING / (through + 2 * _RING)
-    inset = _SLENDER * margin * lateral, margin
     s, t = (
         margin + np.linspace(0.0, 1.0, parts + 1) * (1 - 2 * margin) for margin, parts in zip(inset, (across, through))
     )
@@ -148,6 +141,15 @@ def _coons(bottom: np.ndarray, top: np.ndarray, left: np.ndarray, right: np.ndar
     patch = _coons_at(bottom, top, left, right, np.linspace(0.0, 1.0, len(bottom)), np.linspace(0.0, 1.0, len(left)))
     patch[:, 0], patch[:, -1], patch[0], patch[-1] = bottom, top, left, right
     return patch
+
+
+def worst_corner(template: Template, outline: np.ndarray) -> float:
+    """Smallest sine of a quadrilateral's corner in a section with the given outline (nodes, 2), mm."""
+    nodes = np.vstack([outline, template.weights @ outline])
+    corners = nodes[template.quads]
+    ahead, behind = (np.roll(corners, shift, axis=1) - corners for shift in (-1, 1))
+    cross = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
+    return float((cross / np.linalg.norm(ahead, axis=-1) / np.linalg.norm(behind, axis=-1)).min())
 
 
 def _template(outline: int, patches: list[np.ndarray]) -> Template:
