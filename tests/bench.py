@@ -80,11 +80,13 @@ def prepare(folder: Path) -> None:
         warp = (0.33, 2.6 - 0.00005 * k, 0.006 - 4e-7 * k) if k % 2 else ("", "", "")
         rows.append((f"row{k}", 1 + k % 4, 1 + k % 3, *weft, *warp, 0.35 if k % 2 else ""))
         width = weft[1], warp[1] or weft[1]
-        chords = [0.97 * width[0], 0.95 * width[0], 0.96 * width[1], 0.94 * width[1]]
+        rounded = k % 20 == 0
+        shares = (0.985,) * 4 if rounded else (0.97, 0.95, 0.96, 0.94)
+        chords = [share * width[at // 2] for at, share in enumerate(shares)]
         if not k % 2:
             chords[2:] = ["", ""]
         offsets = [0.05 if chord else "" for chord in chords]
-        general_rows.append((*rows[-1], *chords, *offsets, ("lenticular", "round")[k % 20 == 0]))
+        general_rows.append((*rows[-1], *chords, *offsets, ("lenticular", "round")[rounded]))
     columns.append("weft_thickness_mm")
     write_table(folder / "families10000" / "twill.csv", columns, rows)
     write_table(folder / "families10000g" / "twill.csv", [*columns, *general, "section"], general_rows)

@@ -70,4 +70,4 @@ def test_a_ring_fits_a_smooth_outline(across, through):
     areas = area(nodes[template.quads])
     assert areas.min() > 0 and areas.sum() == pytest.approx(area(outline))
     assert len(template.quads) == across * through + 2 * (across + through)
-    assert worst_corner(template, outline) > 0.5
+    assert worst_corner(template, outline) > 0.4
