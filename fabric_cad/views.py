@@ -77,13 +77,29 @@ def _plotter(mesh: Mesh, **options):
         plotter.add_light(
             pyvista.Light(position=centre + extent * np.array(place), focal_point=centre, intensity=strength)
         )
-    plotter.camera.focal_point = centre
-    plotter.camera.position = centre + extent * np.array([-0.75, -1.5, 1.35])
-    plotter.camera.up = (0.0, 0.0, 1.0)
-    plotter.camera.parallel_projection = True
-    plotter.reset_camera()
-    plotter.camera.zoom(1.4)
+    _frame(plotter, mesh.points)
     return plotter
+
+
+def _frame(plotter, points: np.ndarray) -> None:
+    """Look at a cell from the front left and above, just filling the picture."""
+    towards = np.array([-0.75, -1.5, 1.35]) / np.linalg.norm([-0.75, -1.5, 1.35])
+    right = np.cross([0.0, 0.0, 1.0], towards)
+    right /= np.linalg.norm(right)
+    up = np.cross(towards, right)
+    seen = points @ np.column_stack([right, up])
+    middle = points.mean(axis=0)
+    middle = middle + np.column_stack([right, up]) @ (
+        (seen.min(axis=0) + seen.max(axis=0)) / 2 - [middle @ right, middle @ up]
+    )
+    width, height = np.ptp(seen, axis=0)
+    camera = plotter.camera
+    camera.focal_point = middle
+    camera.position = middle + 2 * np.ptp(points, axis=0).max() * towards
+    camera.up = tuple(up)
+    camera.parallel_projection = True
+    camera.parallel_scale = 1.06 * max(height, width * _SIZE[1] / _SIZE[0]) / 2
+    plotter.renderer.ResetCameraClippingRange()
 
 
 def draw_cell(mesh: Mesh, path: str | Path) -> None:
