@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import BSpline
 
+from .colours import COLOURS
 from .comparison import MODELS, TOLERANCE, Model, crossing_gap
 from .sections import KINDS, Section, contact_section, free_section
 from .solved import SolvedFabric, point_columns
@@ -17,7 +18,6 @@ from .weaves import DIRECTIONS, Yarn, yarns_of
 
 _POINTS = 41
 _ACROSS = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 301)) / 2  # of a width, closer towards the edges
-_COLOURS = {"weft": "#e0862f", "warp": "#3f74a8"}
 _PENETRATION = "#d1001f"
 _UNSEEN = 1e-9  # mm, less than any picture shows
 
@@ -61,14 +61,14 @@ def plot_trajectory(fabric: SolvedFabric, axes, direction: str = "weft") -> None
     names = [name for name, *_ in point_columns(direction)]
     places = np.array(solved.points)
     (_, _), (x2, z2), (x3, _), (x4, _), (x5, z5), _ = places
-    axes.plot(*places[:2].T, color=_COLOURS[direction])
-    axes.plot(*places[4:].T, color=_COLOURS[direction])
+    axes.plot(*places[:2].T, color=COLOURS[direction])
+    axes.plot(*places[4:].T, color=COLOURS[direction])
     sign = np.sign(z5 - z2)
     p_start, p_end = (solved.p_low, solved.p_high) if sign > 0 else (solved.p_high, solved.p_low)
     for start, end, vertex, level, p in ((x2, x3, x2, z2, sign * p_start), (x4, x5, x5, z5, -sign * p_end)):
         x = np.linspace(start, end, _POINTS)
         axes.plot(x, level + p * (x - vertex) ** 2, color="black")
-    axes.plot(*places[2:4].T, color=_COLOURS[direction], linestyle="--")
+    axes.plot(*places[2:4].T, color=COLOURS[direction], linestyle="--")
     axes.plot(*places.T, "o", color="black", markersize=4)
     for name, place in zip(names, places):
         axes.annotate(name, place, xytext=(0, 6), textcoords="offset points", ha="center")
@@ -91,7 +91,7 @@ def plot_sections(fabric: SolvedFabric, axes, direction: str = "weft") -> None:
             turns = {"float": (False, False), "edge": (False, True), "turn": (True, True)}[kind]
             section = contact_section(frame, solved.contact["high"], turns, solved.free_sides["high", kind], below=True)
             title = titles[kind]
-        ax.fill(*section_outline(section), color=_COLOURS[direction], alpha=0.5)
+        ax.fill(*section_outline(section), color=COLOURS[direction], alpha=0.5)
         ax.plot(*section_outline(section), color="black", linewidth=1)
         half_width, half_height = solved.width / 2, solved.thickness / 2
         corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * [half_width, half_height]
@@ -114,7 +114,7 @@ def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 
             start, end = (_on_axis(section, side) for section in (first, second))
             profile.append(z + (1 - blend) * start + blend * end)
     along = np.concatenate(t)
-    axes.fill_between(along, np.concatenate(bottom), np.concatenate(top), color=_COLOURS[direction], alpha=0.6)
+    axes.fill_between(along, np.concatenate(bottom), np.concatenate(top), color=COLOURS[direction], alpha=0.6)
     crossed_direction = DIRECTIONS[1 - DIRECTIONS.index(direction)]
     crossed = fabric.directions[crossed_direction]
     for k, high in enumerate(yarn.high):
@@ -126,7 +126,7 @@ def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 
         axes.fill(
             (k + 0.5) * fabric.directions[direction].crossed_spacing + v,
             level + z,
-            color=_COLOURS[crossed_direction],
+            color=COLOURS[crossed_direction],
             alpha=0.9,
         )
     axes.set(
@@ -161,14 +161,14 @@ def _model_cut(fabric: SolvedFabric, model: Model, axes, direction: str, number:
     yarn, solved = _yarn(fabric, direction, number), fabric.directions[direction]
     along = np.linspace(0.0, len(yarn.high) * solved.crossed_spacing, 50 * len(yarn.high) + 1)
     bottom, top = (z[:, 0] for z in model.heights(fabric, yarn, along, np.zeros(1)))
-    axes.fill_between(along, bottom, top, color=_COLOURS[direction], alpha=0.6, linewidth=0)
+    axes.fill_between(along, bottom, top, color=COLOURS[direction], alpha=0.6, linewidth=0)
     crossed_direction = DIRECTIONS[1 - DIRECTIONS.index(direction)]
     v = fabric.directions[crossed_direction].width * _ACROSS
     here = np.array([(yarn.index + 0.5) * fabric.directions[crossed_direction].crossed_spacing])
     for k, high in enumerate(yarn.high):
         place = (k + 0.5) * solved.crossed_spacing + v
         under, over = (z[0] for z in model.heights(fabric, _yarn(fabric, crossed_direction, k + 1), here, v))
-        axes.fill_between(place, under, over, color=_COLOURS[crossed_direction], alpha=0.9, linewidth=0)
+        axes.fill_between(place, under, over, color=COLOURS[crossed_direction], alpha=0.9, linewidth=0)
         own_bottom, own_top = (z[:, 0] for z in model.heights(fabric, yarn, place, np.zeros(1)))
         low, above = (own_bottom, over) if high else (under, own_top)
         axes.fill_between(place, low, above, where=above > low + _UNSEEN, color=_PENETRATION, linewidth=0)

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from .colours import COLOURS
 from .errors import OutputError
 from .meshing.mesh import Mesh
 from .weaves import DIRECTIONS
 
-COLOURS = {"weft": "#e0862f", "warp": "#3f74a8"}
 _SIZE = (1600, 1200)
 
 

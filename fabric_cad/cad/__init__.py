@@ -2,6 +2,6 @@
 
 from .inspection import Consistency, inspect_cell
 from .solids import solid_of, sweep
-from .step import COLOURS, Cell, assemble, read_step
+from .step import Cell, assemble, read_step
 
-__all__ = ["COLOURS", "Cell", "Consistency", "assemble", "inspect_cell", "read_step", "solid_of", "sweep"]
+__all__ = ["Cell", "Consistency", "assemble", "inspect_cell", "read_step", "solid_of", "sweep"]

@@ -7,10 +7,8 @@ from pathlib import Path
 
 import cadquery as cq
 
+from ..colours import COLOURS
 from ..errors import BuildError
-
-COLOURS = {"weft": (0.88, 0.52, 0.18), "warp": (0.20, 0.42, 0.62)}
-"""Red, green, blue of the yarns in STEP and picture."""
 
 
 @dataclass(frozen=True)

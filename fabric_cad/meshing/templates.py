@@ -47,12 +47,7 @@ class Template:
 
 def flat_template(across: int, through: int) -> Template:
     """``across`` x ``through`` quadrilaterals between a section's four corners."""
-    outline = 2 * (across + through)
-    node = np.eye(outline)
-    bottom = node[: across + 1]
-    right = node[across : across + through + 1]
-    top = node[across + through : 2 * across + through + 1][::-1]
-    left = np.vstack([node[2 * across + through :], node[:1]])[::-1]
+    outline, bottom, top, left, right = _sides(across, through)
     return _template(outline, [_coons(bottom, top, left, right)])
 
 
@@ -87,12 +82,7 @@ def round_template(across: int, through: int, inset: tuple[float, float]) -> Tem
     ``inset`` is the thickness of the ring at the lateral zones and at bottom and top, as
     shares of the section's width and height.
     """
-    outline = 2 * (across + through)
-    node = np.eye(outline)
-    bottom = node[: across + 1]
-    right = node[across : across + through + 1]
-    top = node[across + through : 2 * across + through + 1][::-1]
-    left = np.vstack([node[2 * across + through :], node[:1]])[::-1]
+    outline, bottom, top, left, right = _sides(across, through)
     s, t = (
         margin + np.linspace(0.0, 1.0, parts + 1) * (1 - 2 * margin) for margin, parts in zip(inset, (across, through))
     )
@@ -104,6 +94,16 @@ def round_template(across: int, through: int, inset: tuple[float, float]) -> Tem
         np.stack([block[-1], right], axis=0),
     ]
     return _template(outline, [block, *ring])
+
+
+def _sides(across: int, through: int) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Nodes in the outline of a four-sided section, and its bottom, top, left and right as weights on them."""
+    outline = 2 * (across + through)
+    node = np.eye(outline)
+    bottom, right = node[: across + 1], node[across : across + through + 1]
+    top = node[across + through : 2 * across + through + 1][::-1]
+    left = np.vstack([node[2 * across + through :], node[:1]])[::-1]
+    return outline, bottom, top, left, right
 
 
 def _coons_at(bottom, top, left, right, s: np.ndarray, t: np.ndarray) -> np.ndarray:
