@@ -1,23 +1,18 @@
 """From measured rows to the parameters of the model, whole tables at once.
 
-Of the two directions' crimps, yarn thicknesses and the fabric's thickness, two relations
-leave three free (one in a balanced fabric). Density and width known, the crimp of a yarn
-fixes its amplitude A through the length equation and the reverse, and
-
-    A1 + A2 = b1 + b2                          contact, from (13), (14) at both kinds of crossing
-    w = max(b1 + A1, b2 + A2)                  (15)
-
-The first quantities given, in the order of :data:`CLOSING`, identify a row; what a row holds
+Density and width known, the crimp of a yarn fixes its amplitude A through the length equation
+and the reverse; the relations of :mod:`~fabric_cad.closing` give the rest. The first quantities
+given, in the order of :data:`~fabric_cad.closing.CLOSING`, identify a row; what a row holds
 beyond them is compared with the model.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from .closing import ALONE, BOUNDED, CLOSING, ROUNDING, RULES, SYMBOLS, Closed
 from .errors import InputError, Problem
 from .lengths import excess_length, slope_from_crimp
 from .sections import free_parabola, lateral_arc, round_between, round_free_side
@@ -25,94 +20,8 @@ from .solved import PLATEAUX, SolvedTable, point_columns
 from .tables import Family
 from .weaves import DIRECTIONS
 
-CLOSING = ("weft_crimp", "warp_crimp", "weft_thickness_mm", "warp_thickness_mm", "fabric_thickness_mm")
-"""Quantities that close the identification, in the order in which they are preferred."""
-
-# thinner than this, as a share of the fabric, is rounding and not a difference
-_ROUNDING = 1e-9
-
-
-@dataclass(frozen=True)
-class _Closed:
-    """A1, A2 (amplitudes) and b1, b2 (yarn thicknesses), each shape (rows,), mm."""
-
-    A1: np.ndarray
-    A2: np.ndarray
-    b1: np.ndarray
-    b2: np.ndarray
-
-    @property
-    def fabric(self) -> np.ndarray:
-        """Fabric thickness w. (15)"""
-        return np.maximum(self.b1 + self.A1, self.b2 + self.A2)
-
-    def where(self, mask: np.ndarray, other: _Closed) -> _Closed:
-        """This solution where ``mask``, the other elsewhere."""
-        return _Closed(
-            *(np.where(mask, getattr(self, name), getattr(other, name)) for name in ("A1", "A2", "b1", "b2"))
-        )
-
-
-# One rule for each three of {A1, A2, b1, b2, w}: all solutions of the two relations. Where the
-# fabric thickness leaves two, the first has the weft as the outer (thicker) system.
-_Rule = Callable[..., tuple[_Closed, ...]]
-
-
-def _two_amplitudes_and_fabric(A1, A2, w):
-    return _Closed(A1, A2, w - A1, 2 * A1 + A2 - w), _Closed(A1, A2, 2 * A2 + A1 - w, w - A2)
-
-
-def _two_thicknesses_and_fabric(b1, b2, w):
-    return _Closed(w - b1, 2 * b1 + b2 - w, b1, b2), _Closed(2 * b2 + b1 - w, w - b2, b1, b2)
-
-
-def _weft_alone_and_fabric(A1, b1, w):
-    return (_Closed(A1, (w - A1 + b1) / 2, b1, (w + A1 - b1) / 2),)
-
-
-def _warp_alone_and_fabric(A2, b2, w):
-    return (_Closed((w - A2 + b2) / 2, A2, (w + A2 - b2) / 2, b2),)
-
-
-def _weft_crimp_warp_thickness_and_fabric(A1, b2, w):
-    weft_outside = _Closed(A1, w + b2 - 2 * A1, w - A1, b2)
-    return (weft_outside.where(A1 >= b2, _Closed(A1, w - b2, A1 + w - 2 * b2, b2)),)
-
-
-def _warp_crimp_weft_thickness_and_fabric(A2, b1, w):
-    warp_outside = _Closed(w + b1 - 2 * A2, A2, b1, w - A2)
-    return (warp_outside.where(A2 >= b1, _Closed(w - b1, A2, b1, A2 + w - 2 * b1)),)
-
-
-_RULES: dict[tuple[int, ...], _Rule] = {
-    (0, 1, 2): lambda A1, A2, b1: (_Closed(A1, A2, b1, A1 + A2 - b1),),
-    (0, 1, 3): lambda A1, A2, b2: (_Closed(A1, A2, A1 + A2 - b2, b2),),
-    (0, 1, 4): _two_amplitudes_and_fabric,
-    (0, 2, 3): lambda A1, b1, b2: (_Closed(A1, b1 + b2 - A1, b1, b2),),
-    (1, 2, 3): lambda A2, b1, b2: (_Closed(b1 + b2 - A2, A2, b1, b2),),
-    (0, 2, 4): _weft_alone_and_fabric,
-    (1, 3, 4): _warp_alone_and_fabric,
-    (0, 3, 4): _weft_crimp_warp_thickness_and_fabric,
-    (1, 2, 4): _warp_crimp_weft_thickness_and_fabric,
-    (2, 3, 4): _two_thicknesses_and_fabric,
-    # balanced: A = b, w = 2 A
-    (0,): lambda A: (_Closed(A, A, A, A),),
-    (2,): lambda b: (_Closed(b, b, b, b),),
-    (4,): lambda w: (_Closed(w / 2, w / 2, w / 2, w / 2),),
-}
-
-
 CONTACT_SIDE = {"high": "bottom", "low": "top"}
 """The side of a yarn that touches at each plateau."""
-
-_BOUNDED = ((0, 1, 4), (2, 3, 4), (0, 2, 4), (1, 3, 4))
-"""Sets in which the sum of the first two is the least fabric thickness there is."""
-
-_ALONE = {(0, 2, 4): "warp", (1, 3, 4): "weft"}
-"""Sets that tell of one direction only where that one reaches the fabric's faces: then (15)
-repeats what crimp and thickness say, and the other direction is left open."""
-
-_SYMBOLS = ("A1", "A2", "b1", "b2", "w")
 
 
 @dataclass(frozen=True)
@@ -241,7 +150,7 @@ def _insufficient(table: Family, measured: _Measured, at: int) -> Problem:
     )
 
 
-def _close(measured, transitions, used) -> tuple[_Closed, _Closed, np.ndarray]:
+def _close(measured, transitions, used) -> tuple[Closed, Closed, np.ndarray]:
     """Both solutions of the two relations for every row (the same twice where one exists).
 
     Third, the least fabric thickness the other two numbers allow where (15) bounds it, mm.
@@ -249,7 +158,7 @@ def _close(measured, transitions, used) -> tuple[_Closed, _Closed, np.ndarray]:
     rows = len(used)
     amplitudes = [transitions[d].rise * transitions[d].slope(measured.closing[k]) for k, d in enumerate(DIRECTIONS)]
     values = np.concatenate([np.reshape(amplitudes, (2, rows)), measured.closing[2:]])
-    solutions = [_Closed(*np.full((4, rows), np.nan)) for _ in range(2)]
+    solutions = [Closed(*np.full((4, rows), np.nan)) for _ in range(2)]
     least = np.full(rows, np.nan)
     groups: dict[tuple[int, ...], list[int]] = {}
     for at, columns in enumerate(used):
@@ -257,11 +166,11 @@ def _close(measured, transitions, used) -> tuple[_Closed, _Closed, np.ndarray]:
     groups.pop((), None)
     for columns, group in groups.items():
         given = values[np.ix_(columns, group)]
-        found = _RULES[columns](*given)
+        found = RULES[columns](*given)
         for solution, closed in zip(solutions, (found[0], found[-1])):
             for name in ("A1", "A2", "b1", "b2"):
                 getattr(solution, name)[group] = getattr(closed, name)
-        if columns in _BOUNDED:
+        if columns in BOUNDED:
             least[group] = given[0] + given[1]
     return *solutions, least
 
@@ -287,16 +196,16 @@ def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Pr
         )
         fabric = measured.closing[4]
         refuse(
-            fabric < least * (1 - _ROUNDING),
+            fabric < least * (1 - ROUNDING),
             last,
-            lambda at: f"{fabric[at]:g} is below {' + '.join(_SYMBOLS[k] for k in used[at][:2])} = {least[at]:.4g} mm",
+            lambda at: f"{fabric[at]:g} is below {' + '.join(SYMBOLS[k] for k in used[at][:2])} = {least[at]:.4g} mm",
         )
         refuse(
-            np.array([columns in _ALONE for columns in used], dtype=bool) & (fabric <= least * (1 + _ROUNDING)),
+            np.array([columns in ALONE for columns in used], dtype=bool) & (fabric <= least * (1 + ROUNDING)),
             last,
             lambda at: (
                 f"{fabric[at]:g} is A + b of the same direction again and says nothing of the "
-                f"{_ALONE[used[at]]}; fill {_ALONE[used[at]]}_crimp or {_ALONE[used[at]]}_thickness_mm"
+                f"{ALONE[used[at]]}; fill {ALONE[used[at]]}_crimp or {ALONE[used[at]]}_thickness_mm"
             ),
         )
         arcs = _arcs(measured, transitions, closed)
@@ -382,8 +291,8 @@ def _choose(table, first, second, wrong_first, wrong_second) -> tuple[np.ndarray
     """
     rows = range(len(table))
     with np.errstate(invalid="ignore"):
-        differ = np.abs(first.b1 - second.b1) + np.abs(first.A1 - second.A1) > _ROUNDING * first.fabric
-        more_even = np.abs(second.b1 - second.b2) < np.abs(first.b1 - first.b2) * (1 - _ROUNDING)
+        differ = np.abs(first.b1 - second.b1) + np.abs(first.A1 - second.A1) > ROUNDING * first.fabric
+        more_even = np.abs(second.b1 - second.b2) < np.abs(first.b1 - first.b2) * (1 - ROUNDING)
     possible_first = np.array([at not in wrong_first for at in rows], dtype=bool)
     possible_second = np.array([at not in wrong_second for at in rows], dtype=bool)
     asked_weft, asked_warp = (np.array([each == d for each in table.thicker], dtype=bool) for d in DIRECTIONS)
