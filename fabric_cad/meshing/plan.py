@@ -81,16 +81,20 @@ def _columns(frame: Frame, side: str, across: int) -> list[np.ndarray]:
     """Places v (mm) of the nodes across a side: left of its contact chord, on it, right of it.
 
     Top and bottom of a pointed or flat section have their nodes one above the other, at the
-    ends of either contact chord among others. A round section has ``across`` elements on
-    each chord, and its arcs follow.
+    ends of either contact chord among others (nearly so where the two chords are nearly equal).
+    A round section has ``across`` elements on each chord, and its arcs follow.
     """
     edge, half = frame.width / 2, frame.splits[side][0]
     if frame.form == "round":
         lateral = max(1, round(across * (edge - half) / (2 * half)))
         outside = np.linspace(half, edge, lateral + 1)
         return [-outside[::-1], np.linspace(-half, half, across + 1), outside]
-    halves = sorted({frame.splits[each][0] for each in ("bottom", "top") if frame.has_laterals(each)} | {edge})
-    counts = _allotted(np.diff([-halves[0], *halves]) * ([1] + [2] * (len(halves) - 1)), across)
+    split = {each: frame.splits[each][0] for each in ("bottom", "top") if frame.has_laterals(each)}
+    typical = halves = sorted({*split.values(), edge})
+    if len(split) == 2 and np.ptp(list(split.values())) < frame.width / across / 2:
+        # chords that differ by less than half a column share one, each side with its own chord
+        typical, halves = [np.mean(list(split.values())), edge], [half, edge]
+    counts = _allotted(np.diff([-typical[0], *typical]) * ([1] + [2] * (len(typical) - 1)), across)
     middle = np.linspace(-halves[0], halves[0], counts[0] + 1)
     outer = [np.linspace(a, b, n // 2 + 1)[1:] for a, b, n in zip(halves, halves[1:], counts[1:])]
     right = np.concatenate([[halves[0]], *outer])
