@@ -77,6 +77,10 @@ def _shares(places: np.ndarray) -> np.ndarray:
     return (places - places[0]) / (places[-1] - places[0])
 
 
+_NEARLY = 0.1
+"""Two half chords that differ by less than this share of a column count as nearly equal."""
+
+
 def _columns(frame: Frame, side: str, across: int) -> list[np.ndarray]:
     """Places v (mm) of the nodes across a side: left of its contact chord, on it, right of it.
 
@@ -91,8 +95,8 @@ def _columns(frame: Frame, side: str, across: int) -> list[np.ndarray]:
         return [-outside[::-1], np.linspace(-half, half, across + 1), outside]
     split = {each: frame.splits[each][0] for each in ("bottom", "top") if frame.has_laterals(each)}
     typical = halves = sorted({*split.values(), edge})
-    if len(split) == 2 and np.ptp(list(split.values())) < frame.width / across / 2:
-        # chords that differ by less than half a column share one, each side with its own chord
+    if len(split) == 2 and np.ptp(list(split.values())) < _NEARLY * frame.width / across:
+        # no column for so small a difference: each side has its own chord's end in the same one
         typical, halves = [np.mean(list(split.values())), edge], [half, edge]
     counts = _allotted(np.diff([-typical[0], *typical]) * ([1] + [2] * (len(typical) - 1)), across)
     middle = np.linspace(-halves[0], halves[0], counts[0] + 1)
