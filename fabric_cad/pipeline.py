@@ -105,7 +105,7 @@ def make_cell(
             quality = scaled_jacobians(cell_mesh)
             allowed = allowed_scaled_jacobian(fabric)
         with stages("write deck"):
-            from .deck import write_deck
+            from .decks.cell import write_deck
 
             write_deck(cell_mesh, path["inp"], f"elementary cell of {name}", dialect)
         with stages("write vtu"):

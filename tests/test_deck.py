@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fabric_cad.deck import DIALECTS, element_faces, write_deck
+from fabric_cad.decks.cell import write_deck
+from fabric_cad.decks.faces import element_faces
+from fabric_cad.decks.keywords import DIALECTS
 from fabric_cad.meshing.mesh import Mesh
 
 GOLDEN = Path(__file__).parent / "golden"
