@@ -16,6 +16,7 @@ import numpy as np
 
 DIALECTS = ("calculix", "abaqus")
 _CHUNK = 50_000
+_AT_END = 9999  # increments between two results: more than a step has, so at its end only
 
 
 class Keyword:
@@ -256,7 +257,7 @@ class Boundary(Keyword):
 
 @dataclass(frozen=True)
 class Output(Keyword):
-    """Results to write: fields, contact and, per set of ``force_sets``, the sum of forces on its nodes.
+    """Results to write at the end of a step: fields, contact, per set of ``force_sets`` the sum of its nodes' forces.
 
     ``energy_sets`` are element sets whose strain energy is summed.
     """
@@ -266,19 +267,19 @@ class Output(Keyword):
     contact: bool = True
 
     def lines(self, dialect: str) -> Iterator[str]:
-        sums = "YES" if dialect == "abaqus" else "ONLY"
+        sums = f"TOTALS={'YES' if dialect == 'abaqus' else 'ONLY'}, FREQUENCY={_AT_END}"
         for name in self.force_sets:
-            yield f"*NODE PRINT, NSET={name}, TOTALS={sums}\nRF\n"
+            yield f"*NODE PRINT, NSET={name}, {sums}\nRF\n"
         for name in self.energy_sets:
-            yield f"*EL PRINT, ELSET={name}, TOTALS={sums}\nELSE\n"
+            yield f"*EL PRINT, ELSET={name}, {sums}\nELSE\n"
         if dialect == "abaqus":
-            yield "*OUTPUT, FIELD\n*NODE OUTPUT\nU, RF\n*ELEMENT OUTPUT\nS, E\n"
+            yield f"*OUTPUT, FIELD, FREQUENCY={_AT_END}\n*NODE OUTPUT\nU, RF\n*ELEMENT OUTPUT\nS, E\n"
             if self.contact:
                 yield "*CONTACT OUTPUT\nCSTRESS, CDISP\n"
             return
-        yield "*NODE FILE\nU\n*EL FILE\nS, E\n"
+        yield f"*NODE FILE, FREQUENCY={_AT_END}\nU\n*EL FILE, FREQUENCY={_AT_END}\nS, E\n"
         if self.contact:
-            yield "*CONTACT FILE\nCDIS, CSTR\n"
+            yield f"*CONTACT FILE, FREQUENCY={_AT_END}\nCDIS, CSTR\n"
 
 
 @dataclass(frozen=True)

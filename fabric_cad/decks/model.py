@@ -1,0 +1,145 @@
+"""What a load case adds to the dry cell: yarn material, contact, periodicity, fixings, steps.
+
+The cell is periodic. What one end of a yarn moves more than the other is the cell vector's
+change, and every yarn of a direction shares it through one reference node a direction. Yarns do
+not reach the cell's sides, so no node is in two equations. Three fixed displacements hold the
+whole in place; what holds the yarns to each other is contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BuildError
+from ..meshing.mesh import Mesh
+from ..weaves import DIRECTIONS
+from .cell import ORIENTATION, cell_keywords
+from .faces import touching_faces
+from .keywords import (
+    Boundary,
+    Comment,
+    Compaction,
+    ContactPair,
+    EngineeringConstants,
+    Equation,
+    Hexahedra,
+    Keyword,
+    Material,
+    Nodes,
+    NodeSet,
+    Output,
+    PenaltyInteraction,
+    SolidSection,
+    StaticStep,
+    Tie,
+)
+
+_PAIRS = (("weft_top", "warp_bottom"), ("weft_bottom", "warp_top"))
+_PLACE = 1e-6  # mm, within which the ends of a yarn match
+
+
+@dataclass(frozen=True)
+class Load:
+    """A state of the cell: what its two vectors, a weft's and a warp's period, change by, each (3,) mm."""
+
+    title: str
+    weft: tuple[float, float, float]
+    warp: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Touch:
+    """The contact of yarns: see :class:`fabric_cad.simulation.settings.ContactLaw`; ``rings`` widen the patches."""
+
+    kind: str
+    stiffness: float
+    friction: float = 0.0
+    stick: float = 0.0
+    rings: int = 0
+
+
+def model_keywords(
+    mesh: Mesh,
+    period: tuple[float, float],
+    law: EngineeringConstants,
+    hardening: float,
+    touch: Touch,
+    loads: Iterable[Load],
+    title: str,
+) -> Iterator[Keyword]:
+    """A whole model: the cell of ``mesh``, ``period`` (mm) long and wide, through ``loads`` one after another.
+
+    ``hardening`` (MPa) of the yarns' compaction, 0 for none, works in a second set of elements on
+    the same nodes: it adds to the law's stress. Raises :class:`BuildError` where a yarn's two ends
+    do not match.
+    """
+    yield Comment(f"{title}\nmm, N, MPa; axis 1 of a yarn is its fibres'")
+    yield from cell_keywords(mesh, touch.rings)
+    yield from _material(mesh, law, hardening)
+    yield from _contact(mesh, touch)
+    reference = {name: len(mesh.points) + 1 + at for at, name in enumerate(DIRECTIONS)}
+    yield Nodes("cell_vectors", np.diag([*period, 0.0])[:2], first=reference["weft"])
+    yield from periodic_equations(mesh, period, reference)
+    for name in DIRECTIONS:
+        yield NodeSet(f"{name}_ends", tuple(f"{yarn}_end" for yarn in mesh.yarns if yarn.startswith(name)))
+    yield Boundary(fixings(mesh))
+    energies = (*DIRECTIONS, *(("compaction",) if hardening else ()))
+    output = Output(tuple(f"{name}_ends" for name in DIRECTIONS), energies, contact=touch.kind == "penalty")
+    for load in loads:
+        moved = [(name, getattr(load, name)) for name in DIRECTIONS]
+        driven = [(reference[name], axis, value) for name, change in moved for axis, value in enumerate(change, 1)]
+        yield StaticStep(load.title, (Boundary(tuple(driven)), output))
+
+
+def _material(mesh: Mesh, law: EngineeringConstants, hardening: float) -> Iterator[Keyword]:
+    yield Material("yarn", law)
+    for name in DIRECTIONS:
+        yield SolidSection(name, "yarn", ORIENTATION)
+    if hardening:
+        count = len(mesh.hexahedra)
+        yield Hexahedra("compaction", np.arange(count + 1, 2 * count + 1), mesh.hexahedra + 1)
+        yield Material("yarn_compaction", Compaction(hardening))
+        yield SolidSection("compaction", "yarn_compaction")
+
+
+def _contact(mesh: Mesh, touch: Touch) -> Iterator[Keyword]:
+    present = {name for name, (elements, _) in touching_faces(mesh).items() if len(elements)}
+    pairs = [pair for pair in _PAIRS if present.issuperset(pair)]
+    if touch.kind == "tie":
+        yield from (Tie(f"{slave}_on_{master}", slave, master, 1e-3) for slave, master in pairs)
+    elif pairs:
+        yield PenaltyInteraction("yarn_on_yarn", touch.stiffness, touch.friction, touch.stick)
+        yield from (ContactPair("yarn_on_yarn", slave, master) for slave, master in pairs)
+
+
+def periodic_equations(mesh: Mesh, period: tuple[float, float], reference: dict[str, int]) -> Iterator[Equation]:
+    """Three equations a pair of end nodes: displacement of the end = of the start + of the reference node."""
+    from scipy.spatial import cKDTree
+
+    for yarn in mesh.yarns:
+        direction = yarn.split("_")[0]
+        shift = np.zeros(3)
+        axis = DIRECTIONS.index(direction)
+        shift[axis] = period[axis]
+        starts, ends = mesh.nodes_of(f"{yarn}_start"), mesh.nodes_of(f"{yarn}_end")
+        distance, partner = cKDTree(mesh.points[ends]).query(mesh.points[starts] + shift)
+        if len(starts) != len(ends) or distance.max() > _PLACE or len(np.unique(partner)) != len(ends):
+            raise BuildError(f"{yarn}: the nodes of its two ends do not match")
+        for start, end in zip((starts + 1).tolist(), (ends[partner] + 1).tolist()):
+            for axis in (1, 2, 3):
+                yield Equation(((end, axis, 1.0), (start, axis, -1.0), (reference[direction], axis, -1.0)))
+
+
+def fixings(mesh: Mesh) -> tuple[tuple[int, int, float], ...]:
+    """Displacements that hold the whole cell: the middle of the first weft's start in x and z, of the first warp's in y."""
+    held = []
+    for yarn, axes in (("weft_1", (1, 3)), ("warp_1", (2,))):
+        if f"{yarn}_start" in mesh.surfaces:
+            nodes = mesh.nodes_of(f"{yarn}_start")
+            places = mesh.points[nodes]
+            middle = nodes[((places - places.mean(axis=0)) ** 2).sum(axis=1).argmin()]
+            held += [(int(middle) + 1, axis, 0.0) for axis in axes]
+    return tuple(held)

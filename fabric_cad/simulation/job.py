@@ -1,0 +1,164 @@
+"""One solver job: a deck through a row of loads, and what its output files say of every state.
+
+    mesh, loads --model--> <stem>.inp --ccx--> <stem>.frd, .dat, .log --readers--> Job
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..decks.faces import FACES, touching_faces
+from ..decks.keywords import EngineeringConstants, write_keywords
+from ..decks.model import Load, Touch, model_keywords
+from ..meshing.mesh import Mesh
+from ..weaves import DIRECTIONS
+from .results import State, read_dat, read_frd
+from .settings import Settings
+from .solver import Progress, Run, run_solver
+
+_STRESS_FREE = 1e-6  # MPa: contact pressure above which a node counts as touching
+
+
+@dataclass(frozen=True)
+class Solver:
+    """Which ccx to run, on how many threads, for how many seconds a job, and who hears of its progress."""
+
+    path: Path
+    threads: int
+    time_limit: float
+    listen: Callable[[Progress], None] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """One load that was reached.
+
+    ``forces`` (2, 3) N: sum over the wefts' ends and over the warps' ends of what the neighbouring
+    cells pull with; ``displacement`` (nodes, 3) mm; ``strain`` (nodes, 6) Green's, axes xx, yy, zz,
+    xy, yz, zx; ``pressure`` (nodes,) MPa, NaN off the weft's contact surfaces; ``energy`` N mm of
+    the yarns' strain; ``overclosure`` mm, the largest by which contact surfaces overlap, and
+    ``share`` of the patches' area under pressure, both NaN where yarns are tied.
+    """
+
+    load: Load
+    forces: np.ndarray
+    displacement: np.ndarray
+    strain: np.ndarray
+    pressure: np.ndarray
+    energy: float
+    overclosure: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Job:
+    """A finished or stopped job: how it ran and every load it reached, in the loads' order."""
+
+    run: Run
+    reached: tuple[Reached, ...]
+
+
+def write_model(
+    path: Path,
+    mesh: Mesh,
+    period: tuple[float, float],
+    settings: Settings,
+    loads: tuple[Load, ...],
+    rings: int,
+    title: str,
+    dialect: str = "calculix",
+) -> None:
+    """Write the deck of a cell that goes through loads. Raises :class:`BuildError` where its ends do not match."""
+    law, contact = settings.yarn, settings.contact
+    constants = EngineeringConstants(
+        *(law.E1_MPa, law.E2_MPa, law.E3_MPa, law.nu12, law.nu13, law.nu23, law.G12_MPa, law.G13_MPa, law.G23_MPa)
+    )
+    touch = Touch(contact.kind, contact.stiffness_N_per_mm3, contact.friction, contact.stick_N_per_mm3, rings)
+    write_keywords(model_keywords(mesh, period, constants, law.hardening, touch, loads, title), path, dialect)
+
+
+def run_job(deck: Path, mesh: Mesh, loads: tuple[Load, ...], solver: Solver) -> Job:
+    """Run a deck of :func:`write_model` and read what it reached; of a job that stops early, what came before.
+
+    Raises :class:`SolverError` where the solver cannot be started.
+    """
+    run = run_solver(
+        deck, solver.path, threads=solver.threads, time_limit=solver.time_limit, listen=solver.listen
+    )
+    if not run.increments:
+        return Job(run, ())
+    forces: dict[int, dict[str, np.ndarray]] = {}
+    energies: dict[int, float] = {}
+    for each in read_dat(deck.with_suffix(".dat")):
+        step = round(each.time)  # every step takes a time of 1 and prints at its end
+        if each.quantity == "RF":
+            forces.setdefault(step, {})[each.name.lower()] = each.values
+        elif each.quantity == "ELSE":
+            energies[step] = energies.get(step, 0.0) + float(each.values[0])
+    weights = _patch_areas(mesh)
+    reached = []
+    for state in read_frd(deck.with_suffix(".frd")):
+        if abs(state.time - state.step) > 1e-4:
+            continue  # a step's load reached in part
+        pulls = np.array([forces[state.step].get(f"{name}_ends", np.full(3, np.nan)) for name in DIRECTIONS])
+        reached.append(_reached(mesh, loads[state.step - 1], state, pulls, energies[state.step], weights))
+    return Job(run, tuple(reached))
+
+
+def _reached(
+    mesh: Mesh, load: Load, state: State, forces: np.ndarray, energy: float, weights: np.ndarray
+) -> Reached:
+    count = len(mesh.points)
+    contact = state.fields.get("CONTACT")
+    pressure = np.full(count, np.nan)
+    overclosure = share = float("nan")
+    if contact is not None:
+        columns = state.components("CONTACT")
+        opening = contact[:count, columns.index("COPEN")]
+        touching = weights > 0
+        pressure[touching] = contact[:count, columns.index("CPRESS")][touching]
+        overclosure = max(0.0, float(-np.nanmin(opening)))
+        share = float(weights[np.nan_to_num(pressure) > _STRESS_FREE].sum() / weights.sum())
+    displacement, strain = state.fields["DISP"][:count], state.fields["TOSTRAIN"][:count]
+    return Reached(load, forces, displacement, strain, pressure, energy, overclosure, share)
+
+
+def _patch_areas(mesh: Mesh) -> np.ndarray:
+    """Area (nodes,) of the wefts' contact patches, mm2, shared among the corners of their faces."""
+    areas = np.zeros(len(mesh.points))
+    for name in ("weft_top", "weft_bottom"):
+        elements, sides = touching_faces(mesh)[name]
+        quads = mesh.hexahedra[elements[:, None], FACES[sides]]
+        corners = mesh.points[quads]
+        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        np.add.at(areas, quads, np.linalg.norm(normal, axis=1)[:, None] / 8)
+    return areas
+
+
+def transverse_strains(mesh: Mesh, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Green's strain (nodes,) across and through the yarn, in the axes of the yarns before the load.
+
+    ``strain`` (nodes, 6) as in :class:`Reached`.
+    """
+    axes = np.zeros((2, len(mesh.points), 3))
+    fibre, across = mesh.fibre_axes(), mesh.across_axes()
+    for axis, values in zip(axes, (across, np.cross(fibre, across))):
+        np.add.at(axis, mesh.hexahedra, values[:, None, :])
+        axis /= np.linalg.norm(axis, axis=1)[:, None]
+    xx, yy, zz, xy, yz, zx = strain.T
+    tensor = np.moveaxis(np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]), 2, 0)
+    return tuple(np.einsum("ni,nij,nj->n", axis, tensor, axis) for axis in axes)
+
+
+def widths(mesh: Mesh, points: np.ndarray) -> tuple[float, float]:
+    """Mean width (mm) of the wefts and of the warps at deformed ``points`` (nodes, 3): their extent across."""
+    extents: dict[str, list[float]] = {name: [] for name in DIRECTIONS}
+    for number, yarn in enumerate(mesh.yarns):
+        direction = yarn.split("_")[0]
+        nodes = np.unique(mesh.hexahedra[mesh.yarn == number])
+        extents[direction].append(float(np.ptp(points[nodes, 1 - DIRECTIONS.index(direction)])))
+    return tuple(float(np.mean(extents[name])) for name in DIRECTIONS)
