@@ -141,6 +141,13 @@ def test_a_solver_that_dies_is_told_from_one_that_finishes(tmp_path):
     assert not silent.finished and "status 0" in silent.reason
 
 
+def test_the_solver_gets_its_deck_its_folder_and_its_threads(tmp_path):
+    body = 'echo "$@" $OMP_NUM_THREADS $CCX_NPROC_STIFFNESS $CCX_NPROC_RESULTS $CCX_NPROC_EQUATION_SOLVER; pwd'
+    deck = job(tmp_path / "a folder", BLOCK, "a.job")
+    run_solver(deck, script(tmp_path / "solver", body), threads=3)
+    assert deck.with_suffix(".log").read_text() == f"-i a.job 3 3 3 3\n{deck.parent}\n"
+
+
 @needs_ccx
 def test_a_job_that_finishes(tmp_path):
     steps = ((0.02, "0.5, 1."), (0.04, "1., 4."))
@@ -156,9 +163,7 @@ def test_a_job_that_finishes(tmp_path):
     assert [at.load for at in heard] == pytest.approx([0.5, 1, 0.25, 0.5, 0.75, 1])
     assert [at.total_time for at in heard] == pytest.approx([0.5, 1, 2, 3, 4, 5])
     assert {at.steps for at in heard} == {2}
-    log = (tmp_path / "job.log").read_text()
-    assert "Using up to 2 cpu(s) for the stress" in log or "Using up to 1 cpu(s) for the stress" in log  # one element
-    assert "Job finished" in log
+    assert "Job finished" in (tmp_path / "job.log").read_text()
 
 
 @needs_ccx

@@ -171,7 +171,7 @@ def _blocks(data: bytes, nodes: int, path: Path) -> Iterator[tuple]:
         if start < 0 or len(head) < 4 or not head[2].startswith(" -4"):
             return
         increment, step = map(int, head[0].split()[2:4])
-        time, rows = float(head[1].split()[2]), int(head[1].split()[3])
+        time, rows = float(head[1][12:24]), int(head[1][24:36])
         labels = tuple(line[5:13].strip() for line in head[3:] if line[33:38].strip() != "1")
         values = _table(data, start + 1, rows, len(labels), nodes, path)
         if values is None:

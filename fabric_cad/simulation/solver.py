@@ -107,8 +107,9 @@ def run_solver(
     Everything it prints goes to ``<stem>.log`` as it comes; output of an earlier run is removed first.
     ``time_limit`` in seconds of wall clock. ``listen`` is called at every increment that converges. Past
     the limit, when ``stop`` is set (the way to end runs in threads of a pool, which Ctrl-C does not
-    reach), or on any exception (Ctrl-C, one raised by ``listen``), the process and its children are killed;
-    an exception goes on to the caller. The steps are looked for in the deck itself, not in files it includes.
+    reach), or on any exception (Ctrl-C, one raised by ``listen``), the process and its children are
+    killed; an exception goes on to the caller. SIGTERM ends Python without one, unless the caller makes
+    it one. The steps are looked for in the deck itself, not in files it includes.
     Raises InputError for a deck that is not there or not an .inp, SolverError where ccx cannot be started.
     """
     deck = Path(deck).resolve()
@@ -266,7 +267,7 @@ def _verdict(deck: Path, child: _Child, periods: tuple[float, ...], seconds: flo
 
 def _failure(child: _Child, log: str, place: str, reached: bool) -> str:
     """Why the job is not finished, "" if it is; ``reached`` whether any increment was tried."""
-    if child.killed:
+    if child.killed and child.status == -signal.SIGKILL:
         return f"{child.killed} {place}"
     if re.search("best solution and residuals", log):
         return f"did not converge {place}"
