@@ -38,10 +38,12 @@ def script(path, body):
 def alive(pid):
     """Whether a process runs (one that ended and waits for its parent does not)."""
     try:
-        state = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True, check=True)
-    except subprocess.CalledProcessError:
+        os.kill(pid, 0)
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except ProcessLookupError:
         return False
-    return not state.stdout.strip().startswith("Z")
+    except FileNotFoundError:
+        return not Path("/proc/self/stat").exists()
 
 
 def gone(pid, within=2.0):
