@@ -60,3 +60,7 @@ class BuildError(FabricCadError):
 
 class OutputError(FabricCadError):
     """The output directory cannot take the result (not writable, full, in the way)."""
+
+
+class SolverError(FabricCadError):
+    """The finite-element solver is not there or cannot be started."""
