@@ -1,5 +1,6 @@
-"""Mechanics of a meshed cell: CalculiX run as a child process, and its output files read back.
+"""The cell under load: settings, decks through CalculiX, and what the results say.
 
-The finite-element solver stays a program of its own (``ccx``), found on the user's machine and talked
-to through files only; nothing here is needed to make a cell, its mesh or its deck.
+``settings`` reads ``simulation.toml``; ``tension`` and ``shear`` name the states and turn results
+into tables; ``job`` takes one deck through the ``solver`` and reads its ``results``;
+``penetration`` measures deformed yarns against each other; ``run`` makes a row's files.
 """
