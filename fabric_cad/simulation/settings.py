@@ -69,7 +69,7 @@ class ContactLaw:
 
 @dataclass(frozen=True)
 class CellMesh:
-    """Elements of the simulated cell, as the options of :func:`fabric_cad.meshing.mesh_options`."""
+    """Elements of the simulated cell, as the options of :func:`fabric_cad.mesh_options`; ``through`` 0: the least."""
 
     across: int
     crossing: int
@@ -133,7 +133,7 @@ _CHECKS: dict[str, dict[str, Check]] = {
         "friction": (float, lambda v: 0 <= v <= 2, "is not between 0 and 2"),
         "stick_N_per_mm3": _POSITIVE,
     },
-    "mesh": {"across": _count(2, 200), "crossing": _count(2, 200), "through": _count(1, 100), "gap": _count(2, 200)},
+    "mesh": {"across": _count(2, 200), "crossing": _count(2, 200), "through": _count(0, 100), "gap": _count(2, 200)},
     "tension": {
         "strain": (float, lambda v: 0 < v <= 0.1, "is not above 0 and up to 0.1"),
         "ratios": (list, lambda v: bool(v) and all(_is_ratio(k) for k in v), "is not a list of numbers from 0 to inf"),

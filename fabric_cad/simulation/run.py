@@ -1,0 +1,332 @@
+"""A row's cell under load, from the family table to the files in its folder.
+
+    row -> solved fabric -> STEP -> coarse hexahedra -> deck -> ccx -> table, pictures, report
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..decks.model import Load
+from ..errors import BuildError, SolverError
+from ..meshing.mesh import Mesh
+from ..pipeline import Stages
+from ..solved import SolvedFabric
+from ..staging import staged
+from ..tables import Family
+from .job import Job, Reached, Solver, run_job, transverse_strains, write_model
+from .settings import Settings, read_settings
+from .shear import angles, cell_vectors, shear_loads, shear_rows, valid_angle
+from .tension import paths, tension_loads, tension_rows
+
+INCOMPLETE = "incomplete"
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """The cell that is loaded: its fabric, its mesh, and what was measured on the mesh."""
+
+    fabric: SolvedFabric
+    mesh: Mesh
+    quality: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """What tension and shear have in common: the row, its settings and cell, and how decks are run.
+
+    ``kind`` is ``tension`` or ``shear``, the stem of every file; ``folder`` takes them.
+    """
+
+    kind: str
+    cell: Cell
+    settings: Settings
+    folder: Path
+    stages: Stages
+
+    def path(self, ending: str) -> Path:
+        """A file of this case, e.g. ``tension.csv`` or ``tension_curves.png``."""
+        return self.folder / f"{self.kind}{ending}"
+
+
+def make_tension(row: Family, families: str | Path, out: str | Path, solver: Solver, **options) -> dict:
+    """Biaxial tension of one row's cell: every file of it in ``out/<row name>``; its report.
+
+    ``options``: ``mesh``, keywords of :func:`fabric_cad.mesh_options` that win over the settings',
+    and ``stages``. Raises :class:`FabricCadError`; where the solver stopped early what it reached is
+    in ``out/<row name>/tension_incomplete``, earlier results are as they were.
+    """
+    return _make("tension", _tension, row, families, out, solver, **options)
+
+
+def make_shear(row: Family, families: str | Path, out: str | Path, solver: Solver, **options) -> dict:
+    """Trellis shear of one row's cell; as :func:`make_tension`."""
+    return _make("shear", _shear, row, families, out, solver, **options)
+
+
+def write_case(kind: str, row: Family, families: str | Path, out: str | Path, dialect: str, **options) -> list[Path]:
+    """Write the decks of a case and run nothing; their places in ``out/<row name>``. Options as above."""
+    name = row.names[0]
+    with staged(Path(out) / name) as folder:
+        case = _prepared(kind, row, families, folder, **options)
+        return [Path(out) / name / deck.name for deck, _ in _decks(case, dialect)]
+
+
+def _make(
+    kind: str,
+    work: Callable[[Case, list[Job]], tuple[list[dict], dict]],
+    row: Family,
+    families: str | Path,
+    out: str | Path,
+    solver: Solver,
+    **options,
+) -> dict:
+    name = row.names[0]
+    with staged(Path(out) / name) as folder:
+        case = _prepared(kind, row, families, folder, **options)
+        jobs = []
+        for deck, loads in _decks(case, "calculix"):
+            with case.stages(f"solve {deck.stem}"):
+                jobs.append(run_job(deck, case.cell.mesh, loads, solver))
+            if not jobs[-1].run.finished:
+                break
+        rows, found = work(case, jobs)
+        report = _report(case, name, jobs, found)
+        _write_table(case.path(".csv"), rows)
+        case.path(".json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+        if not jobs[-1].run.finished:
+            target = Path(out) / name / f"{kind}_{INCOMPLETE}"
+            with staged(target) as kept:
+                for file in folder.iterdir():
+                    shutil.move(file, kept / file.name)
+            raise SolverError(f"{name}: the solver {jobs[-1].run.reason}; what it reached is in {target}")
+    return report
+
+
+def _prepared(
+    kind: str,
+    row: Family,
+    families: str | Path,
+    folder: Path,
+    mesh: dict[str, int | float] | None = None,
+    stages: Stages | None = None,
+) -> Case:
+    """The row's settings and its cell, meshed."""
+    settings, stages = read_settings(families, row.names[0]), stages or Stages()
+    return Case(kind, _cell(row, settings, mesh or {}, folder, stages), settings, folder, stages)
+
+
+def _cell(row: Family, settings: Settings, options: dict[str, int | float], folder: Path, stages: Stages) -> Cell:
+    """The row's cell, meshed as coarsely as its settings ask for. Raises :class:`BuildError` where the mesh is unsound."""
+    from ..identification import identify
+    from ..meshing.options import mesh_options
+    from ..report import contact_pairing, end_pairing
+
+    with stages("identify"):
+        fabric = identify(row)[row.names[0]]
+    asked = options if "size" in options else {k: v for k, v in asdict(settings.mesh).items() if v} | options
+    chosen = mesh_options(fabric, **asked)
+    with stages("solids"):
+        from ..masters import build_cell
+
+        solids = build_cell(fabric)
+    step, msh = folder / "cell.step", folder / "cell.msh"
+    with stages("write STEP"):
+        solids.write_step(step)
+    with stages("mesh"):
+        from ..meshing.mesher import mesh_cell, read_mesh
+
+        mesh_cell(step, fabric, chosen, msh)
+        mesh = read_mesh(msh)
+    step.unlink()
+    msh.unlink()
+    with stages("quality"):
+        from ..views import scaled_jacobians
+
+        worst = float(scaled_jacobians(mesh).min())
+        contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.period)
+    if not worst > 0 or contact.nodes != contact.paired or ends.nodes != ends.paired:
+        raise BuildError(f"{fabric.name}: the mesh has elements turned inside out or nodes without their partner")
+    quality = {
+        "nodes": len(mesh.points),
+        "hexahedra": len(mesh.hexahedra),
+        "min_scaled_jacobian": worst,
+        "contact_nodes": contact.nodes,
+        "coincident_contact_nodes": contact.paired,
+    }
+    return Cell(fabric, mesh, quality)
+
+
+def _decks(case: Case, dialect: str) -> list[tuple[Path, tuple[Load, ...]]]:
+    """Write the case's decks; their places and loads."""
+    cell, settings, period = case.cell, case.settings, case.cell.fabric.period
+    if case.kind == "tension":
+        runs = [tension_loads(period, path) for path in paths(settings.tension, settings.contact)]
+        rings = 0
+    else:
+        runs, rings = [shear_loads(period, settings.shear)], settings.shear.rings
+    decks = []
+    with case.stages("write deck"):
+        for at, loads in enumerate(runs, 1):
+            deck = case.path(f"_{at}.inp" if len(runs) > 1 else ".inp")
+            title = f"{case.kind} of the elementary cell of {cell.fabric.name}"
+            write_model(deck, cell.mesh, period, settings, loads, rings, title, dialect)
+            decks.append((deck, loads))
+    return decks
+
+
+def _tension(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
+    """Table, report and pictures of a tension case."""
+    cell, tension = case.cell, case.settings.tension
+    computed = paths(tension, case.settings.contact)
+    with case.stages("penetration"):
+        vectors = [[np.diag([*cell.fabric.period, 0.0])[:2] * (1 + np.array(state))[:, None] for state in path] for path in computed]
+        depths = [_depths(cell.mesh, job.reached, at) for job, at in zip(jobs, vectors)]
+    rows = tension_rows(cell.mesh, cell.fabric.period, tension, computed, jobs, depths)
+    if len(rows) > 1:
+        with case.stages("pictures"):
+            from ..plots import plot_tension_curves, plot_tension_surface
+
+            columns = {name: [row[name] for row in rows] for name in rows[0]}
+            columns |= {name: columns[f"{name}_N_per_yarn"] for name in ("T11", "T22")}
+            plot_tension_curves(columns).savefig(case.path("_curves.png"), dpi=150)
+            plot_tension_surface(columns).savefig(case.path("_surface.png"), dpi=150)
+            _pictures(case, _most_equal(computed, jobs))
+    return rows, {"balanced_difference_percent": _difference(rows)}
+
+
+def _shear(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
+    """Table, report and pictures of a shear case."""
+    cell, shear = case.cell, case.settings.shear
+    vectors = [cell_vectors(cell.fabric.period, angle, shear.strain) for angle in angles(shear)]
+    with case.stages("penetration"):
+        depths = _depths(cell.mesh, jobs[0].reached, vectors)
+    rows = shear_rows(cell.mesh, cell.fabric.period, shear, jobs[0], depths)
+    valid = valid_angle(shear, min(each.thickness for each in cell.fabric.directions.values()), depths)
+    if rows:
+        with case.stages("pictures"):
+            from ..plots import plot_shear_curve
+
+            columns = {name: [row[name] for row in rows] for name in rows[0]}
+            plot_shear_curve(columns, allowed=valid.bound).savefig(case.path("_curve.png"), dpi=150)
+            _pictures(case, jobs[0].reached[-1])
+    found = {"valid_up_to_deg": valid.angle, "valid_penetration_mm": valid.bound, "contact_lost_validity": valid.ended}
+    return rows, found
+
+
+def _depths(mesh: Mesh, reached: Sequence[Reached], vectors: Sequence[np.ndarray]) -> list[float]:
+    """Largest geometric penetration (mm) of the deformed yarns, state by state."""
+    from .penetration import penetration
+
+    return [penetration(mesh, mesh.points + each.displacement, at).depth for each, at in zip(reached, vectors)]
+
+
+def _most_equal(computed, jobs: list[Job]) -> Reached:
+    """The state with the largest strain in both directions, as far as it was reached."""
+    states = [(min(at), max(at), each) for path, job in zip(computed, jobs) for at, each in zip(path, job.reached)]
+    return max(states, key=lambda state: state[:2])[2]
+
+
+def _pictures(case: Case, state: Reached) -> None:
+    """The deformed cell of Fig. 22b-d and its ParaView file."""
+    from ..views import draw_deformed, write_deformed_vtu
+
+    mesh = case.cell.mesh
+    across, through = transverse_strains(mesh, state.strain)
+    fields = {"strain_across": across, "strain_through": through, "contact_pressure_MPa": state.pressure}
+    write_deformed_vtu(mesh, state.displacement, fields, {"fibre_axis": mesh.fibre_axes()}, case.path(".vtu"))
+    draw_deformed(
+        mesh, state.displacement, case.path("_normal.png"), state.displacement[:, 2], "displacement in z, mm", hide=("weft_1",)
+    )
+    draw_deformed(mesh, state.displacement, case.path("_crushing.png"), initial=True, scale=_magnified(mesh, state))
+    draw_deformed(mesh, state.displacement, case.path("_strain.png"), through, "strain through the yarn")
+    if not np.isnan(state.pressure).all():
+        draw_deformed(
+            mesh,
+            state.displacement,
+            case.path("_pressure.png"),
+            state.pressure,
+            "contact pressure, MPa",
+            hide=[name for name in mesh.yarns if name.startswith("warp")],
+        )
+
+
+def _magnified(mesh: Mesh, state: Reached) -> float:
+    """A round factor that makes the largest displacement a tenth of the cell, at least 1."""
+    largest = np.linalg.norm(state.displacement, axis=1).max()
+    wanted = 0.1 * np.ptp(mesh.points, axis=0).max() / largest
+    if wanted <= 1:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return max(step * power for step in (1, 2, 5) if step * power <= wanted)
+
+
+def _difference(rows: list[dict]) -> float | None:
+    """Difference of T22 from T11 (%) at the largest strain of the curve k = 1."""
+    equal = [row for row in rows if row["k"] == 1 and row["T11_N_per_yarn"]]
+    if not equal:
+        return None
+    last = max(equal, key=lambda row: row["E11"])
+    return 100 * (last["T22_N_per_yarn"] / last["T11_N_per_yarn"] - 1)
+
+
+def _report(case: Case, name: str, jobs: list[Job], found: dict) -> dict:
+    """The content of ``tension.json`` or ``shear.json``."""
+    reached = [each for job in jobs for each in job.reached]
+    settings = asdict(case.settings)
+    settings["yarn"]["compaction_strain"] = _finite(settings["yarn"]["compaction_strain"])
+    settings["tension"]["ratios"] = [_finite(ratio) for ratio in settings["tension"]["ratios"]]
+    return {
+        "row": name,
+        "case": case.kind,
+        "settings": {key: settings[key] for key in ("yarn", "contact", case.kind)},
+        "mesh": case.cell.quality,
+        "solver": {
+            "version": jobs[0].run.version,
+            "finished": jobs[-1].run.finished,
+            "reason": jobs[-1].run.reason,
+            "jobs": len(jobs),
+            "states": len(reached),
+            "cutbacks": sum(job.run.cutbacks for job in jobs),
+            "seconds": round(sum(job.run.seconds for job in jobs), 3),
+            "peak_memory_MB": round(max(job.run.peak_memory for job in jobs) / 1e6, 1),
+            "warnings": sorted({warning for job in jobs for warning in job.run.warnings}),
+        },
+        "contact": {
+            "max_contact_penetration_mm": _extreme(max, [each.overclosure for each in reached]),
+            "min_contact_share": _extreme(min, [each.share for each in reached]),
+        },
+        **found,
+        "seconds": {key: round(value, 4) for key, value in case.stages.seconds.items()},
+    }
+
+
+def _finite(value: float) -> float | str:
+    """Infinity as text, for JSON has none."""
+    return "inf" if math.isinf(value) else value
+
+
+def _extreme(choose: Callable, values: list[float]) -> float | None:
+    known = [value for value in values if not math.isnan(value)]
+    return choose(known) if known else None
+
+
+def _write_table(path: Path, rows: list[dict]) -> None:
+    """Rows as CSV; an empty cell where there is no number."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        if rows:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(rows[0])
+            writer.writerows([[_cell_text(value) for value in row.values()] for row in rows])
+
+
+def _cell_text(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:.9g}"
