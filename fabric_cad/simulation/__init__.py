@@ -1,0 +1,1 @@
+"""Finite element simulations of the elementary cell: decks, runs, and what their results say."""
