@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -64,7 +65,7 @@ def penetration(mesh: Mesh, points: np.ndarray, period: np.ndarray | None = None
     _check("points", points, mesh.points.shape)
     if period is not None:
         _check("period", period, (2, 3))
-    bodies = [_body(mesh, points, period, index) for index in range(len(mesh.yarns))]
+    bodies = [_Body(mesh, points, period, index) for index in range(len(mesh.yarns))]
     found, by_pair = Penetration(), {}
     for (i, one), (j, other) in product(enumerate(bodies), repeat=2):
         if i == j and period is None:
@@ -103,39 +104,49 @@ def _direction(name: str) -> int:
     return DIRECTIONS.index(name.split("_")[0])
 
 
-@dataclass(frozen=True, eq=False)
-class _Body:
-    """A yarn of the deformed cell, mm.
+class _Boxed:
+    """Faces or elements, corners (elements, 4 or 8, 3) mm, with their boxes and what finds the near ones."""
 
-    ``probes`` (probes, 3) are the points of its skin to be looked for in other yarns; ``corners``
-    (elements, 8, 3) of its hexahedra, in boxes from ``low`` to ``high`` (elements, 3); ``skin``
-    (faces, 4, 3) of its lateral faces, those of its continuation in the neighbouring cells included.
+    def __init__(self, corners: np.ndarray) -> None:
+        self.corners = corners
+        self.low, self.high = corners.min(axis=1), corners.max(axis=1)
+        self.middles = (self.low + self.high) / 2
+        self.half = (self.high - self.low).max(axis=0) / 2 * (1 + 1e-9)
+
+
+class _Body:
+    """One yarn of the deformed cell.
+
+    ``probes`` (probes, 3) mm are the points of its skin to be looked for in other yarns;
+    ``elements`` are its hexahedra and ``skin`` its lateral faces, those of its continuation in
+    the neighbouring cells included.
     """
 
-    direction: int
-    probes: np.ndarray
-    corners: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    skin: np.ndarray
+    def __init__(self, mesh: Mesh, points: np.ndarray, period: np.ndarray | None, index: int) -> None:
+        name = mesh.yarns[index]
+        self.direction = _direction(name)
+        quads = np.vstack([mesh.surfaces[f"{name}_{kind}"] for kind in ("contact", "free")])
+        edges = np.unique(np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)), axis=0)
+        faces = points[quads]
+        self.probes = np.vstack([points[np.unique(quads)], points[edges].mean(axis=1), faces.mean(axis=1)])
+        self.elements = _Boxed(points[mesh.hexahedra[mesh.yarn == index]])
+        along = np.zeros((1, 3)) if period is None else period[self.direction] * np.array([[-1], [0], [1]])
+        self.skin = _Boxed((faces + along[:, None, None]).reshape(-1, 4, 3))
 
+    @cached_property
+    def by_element(self) -> cKDTree:
+        """Middles of the elements, in units of the largest half box."""
+        return cKDTree(self.elements.middles / self.elements.half)
 
-def _body(mesh: Mesh, points: np.ndarray, period: np.ndarray | None, index: int) -> _Body:
-    name = mesh.yarns[index]
-    direction = _direction(name)
-    quads = np.vstack([mesh.surfaces[f"{name}_{kind}"] for kind in ("contact", "free")])
-    edges = np.unique(np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)), axis=0)
-    faces = points[quads]
-    corners = points[mesh.hexahedra[mesh.yarn == index]]
-    along = np.zeros((1, 3)) if period is None else period[direction] * np.array([[-1], [0], [1]])
-    return _Body(
-        direction=direction,
-        probes=np.vstack([points[np.unique(quads)], points[edges].mean(axis=1), faces.mean(axis=1)]),
-        corners=corners,
-        low=corners.min(axis=1),
-        high=corners.max(axis=1),
-        skin=(faces + along[:, None, None]).reshape(-1, 4, 3),
-    )
+    @cached_property
+    def by_face(self) -> cKDTree:
+        """Middles of the faces of the skin, mm."""
+        return cKDTree(self.skin.middles)
+
+    @cached_property
+    def by_corner(self) -> cKDTree:
+        """Corners of the faces of the skin, mm."""
+        return cKDTree(self.skin.corners.reshape(-1, 3))
 
 
 def _shifts(period: np.ndarray | None, one: _Body, other: _Body) -> np.ndarray:
@@ -150,44 +161,38 @@ def _shifts(period: np.ndarray | None, one: _Body, other: _Body) -> np.ndarray:
 
 def _deepest(one: _Body, other: _Body, shifts: np.ndarray) -> tuple[float, np.ndarray]:
     """Depth (mm) and place (3,) of the probe of ``one`` deepest inside ``other`` or its images."""
+    low, high = other.elements.low.min(axis=0), other.elements.high.max(axis=0)
     moved = one.probes - shifts[:, None]
-    near = ((moved >= other.low.min(axis=0)) & (moved <= other.high.max(axis=0))).all(axis=2)
-    shift, probe = np.nonzero(near)
-    if not len(probe):
-        return 0.0, np.full(3, np.nan)
-    places = moved[shift, probe]
-    inside = _inside(places, other)
+    image, probe = np.nonzero(((moved >= low) & (moved <= high)).all(axis=2))
+    places = moved[image, probe]
+    inside = _inside(places, other) if len(places) else probe
     if not len(inside):
         return 0.0, np.full(3, np.nan)
-    depths = _distances(places[inside], other.skin)
+    depths = _depths(places[inside], other)
     deepest = int(depths.argmax())
     return float(depths[deepest]), one.probes[probe[inside[deepest]]]
 
 
 def _inside(places: np.ndarray, body: _Body) -> np.ndarray:
     """Indices of the places (places, 3) that lie in an element of a yarn."""
-    middles, reach = (body.low + body.high) / 2, (body.high - body.low).max(axis=0) / 2 * (1 + 1e-9)
-    pairs = cKDTree(places / reach).sparse_distance_matrix(
-        cKDTree(middles / reach), 1.0, p=np.inf, output_type="ndarray"
-    )
-    place, element = pairs["i"], pairs["j"]
-    margin = 1e-9 * reach
-    boxed = ((places[place] >= body.low[element] - margin) & (places[place] <= body.high[element] + margin)).all(axis=1)
+    elements = body.elements
+    near = cKDTree(places / elements.half).sparse_distance_matrix(body.by_element, 1.0, p=np.inf, output_type="ndarray")
+    place, element = near["i"], near["j"]
+    off = np.maximum(elements.low[element] - places[place], places[place] - elements.high[element])
+    boxed = (off <= 1e-9 * elements.half).all(axis=1)
     place, element = place[boxed], element[boxed]
-    return np.unique(place[inside_hexahedra(places[place], body.corners[element])])
+    return np.unique(place[inside_hexahedra(places[place], elements.corners[element])])
 
 
-def _distances(places: np.ndarray, quads: np.ndarray) -> np.ndarray:
-    """Distance (places,) of each place to the nearest of the quadrilaterals (quads, 4, 3), mm."""
-    nearest, _ = cKDTree(quads.reshape(-1, 3)).query(places)
-    middles = quads.mean(axis=1)
-    reach = np.linalg.norm(quads - middles[:, None], axis=2).max()
-    found = cKDTree(middles).query_ball_point(places, nearest + reach)
+def _depths(places: np.ndarray, body: _Body) -> np.ndarray:
+    """Distance (places,) of each place to the nearest face of a yarn's skin, mm."""
+    skin = body.skin
+    nearest, _ = body.by_corner.query(places)
+    found = body.by_face.query_ball_point(places, nearest + np.linalg.norm(skin.half))
     place = np.repeat(np.arange(len(places)), [len(each) for each in found])
-    quad = np.concatenate([np.asarray(each, dtype=int) for each in found])
-    low, high = quads.min(axis=1)[quad], quads.max(axis=1)[quad]
-    off = np.maximum(np.maximum(low - places[place], places[place] - high), 0.0)
-    kept = np.linalg.norm(off, axis=1) <= nearest[place]
-    place, quad = place[kept], quad[kept]
-    np.minimum.at(nearest, place, distance_to_quads(places[place], quads[quad]))
+    face = np.concatenate([np.asarray(each, dtype=int) for each in found])
+    off = np.maximum(np.maximum(skin.low[face] - places[place], places[place] - skin.high[face]), 0.0)
+    near = np.linalg.norm(off, axis=1) <= nearest[place]
+    place, face = place[near], face[near]
+    np.minimum.at(nearest, place, distance_to_quads(places[place], skin.corners[face]))
     return nearest
