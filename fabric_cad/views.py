@@ -25,7 +25,7 @@ _BAR = {
     "height": 0.07,
     "position_x": 0.25,
     "position_y": 0.03,
-    "fmt": "%.3g",
+    "fmt": "%.4g",
     "title_font_size": 34,
     "label_font_size": 30,
     "font_family": "arial",
@@ -212,23 +212,21 @@ def draw_deformed(
     """Draw a deformed cell off-screen as PNG, as the paper's Fig. 22b-d.
 
     ``displacement`` (nodes, 3) mm, drawn ``scale`` times larger, which the picture then says.
-    ``field`` (nodes,) colours the cell, with a bar called ``label`` from the first to the second of
-    ``limits`` (by default, the least and greatest value seen; equally far to both sides where they
-    differ in sign); nodes where it is NaN are grey. Without a field yarns have the colours of their
-    directions, or are grey among ``initial`` ones, drawn as white glass; with one, these are drawn
-    by their edges only. Yarns named in ``hide`` are
-    left out. Raises ValueError where an array does not fit the mesh, a name is none of its yarns,
-    or none is left.
+    ``field`` (nodes,) colours the cell, grey where it is NaN, with a bar called ``label`` between
+    ``limits``: by default round values that hold those of the yarns drawn. Colours run from blue
+    over white to red where the limits are equally far from 0, else from violet to yellow. Without
+    a field yarns have the colours of their directions. With ``initial`` the initial cell is drawn
+    too: over a field by its edges, else as white glass over grey yarns. Yarns named in ``hide``
+    are left out. Raises ValueError where an array does not fit the mesh, a name is none of its
+    yarns, or none is left.
     """
     moved = mesh.points + scale * _checked("displacement", displacement, mesh.points.shape)
-    if unknown := set(hide) - set(mesh.yarns):
-        raise ValueError(f"no yarn is called {', '.join(sorted(unknown))}")
-    if not (shown := [name for name in mesh.yarns if name not in hide]):
-        raise ValueError("no yarn is left to be drawn")
+    field = None if field is None else _checked("field", field, mesh.points.shape[:1])
+    shown = _shown(mesh, hide)
     _offscreen()
     plotter = _scene(off_screen=True)
     if field is not None:
-        _add_field(plotter, _skin(mesh, moved, shown), _checked("field", field, mesh.points.shape[:1]), label, limits)
+        _add_field(plotter, _skin(mesh, moved, shown), field, label, limits)
     elif initial:
         skin = _skin(mesh, moved, shown)
         plotter.add_mesh(skin, color=_TENSED, **_GLOSS)
@@ -236,16 +234,30 @@ def draw_deformed(
     else:
         _add_yarns(plotter, mesh, moved, shown)
     if initial:
-        skin = _skin(mesh, mesh.points, shown)
-        if field is None:
-            plotter.add_mesh(skin, color="white", opacity=0.35, smooth_shading=True, ambient=0.6, diffuse=0.4)
-        _add_edges(plotter, skin, color="#707070", line_width=1.5)
+        _add_initial(plotter, _skin(mesh, mesh.points, shown), glass=field is None)
     if scale != 1:
         plotter.add_text(f"displacements \u00d7 {scale:g}", position=(0.03, 0.94), viewport=True, **_TEXT)
-    seen = np.vstack([moved, mesh.points]) if initial else moved
+    drawn = np.unique(mesh.hexahedra[np.isin(mesh.yarn, [mesh.yarns.index(name) for name in shown])])
+    seen = np.vstack([moved[drawn], mesh.points[drawn]]) if initial else moved[drawn]
     _light(plotter, seen)
     _frame(plotter, seen, below=0.0 if field is None else _BELOW)
     _save(plotter, path)
+
+
+def _shown(mesh: Mesh, hide: Collection[str]) -> list[str]:
+    """The yarns that are not hidden. Raises ValueError where a hidden one is none, or all are."""
+    if unknown := set(hide) - set(mesh.yarns):
+        raise ValueError(f"no yarn is called {', '.join(sorted(unknown))}")
+    if not (shown := [name for name in mesh.yarns if name not in hide]):
+        raise ValueError("no yarn is left to be drawn")
+    return shown
+
+
+def _add_initial(plotter, skin, glass: bool) -> None:
+    """The thin edges of a skin, and the skin itself as white glass."""
+    if glass:
+        plotter.add_mesh(skin, color="white", opacity=0.35, smooth_shading=True, ambient=0.6, diffuse=0.4)
+    _add_edges(plotter, skin, color="#707070", line_width=1.5)
 
 
 def _add_field(plotter, skin, field: np.ndarray, label: str, limits: tuple[float, float] | None) -> None:
