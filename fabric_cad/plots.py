@@ -1,16 +1,21 @@
-"""Sections, trajectories and cuts of a solved fabric, as the paper's Fig. 15 to 18 draw them, and its models compared.
+"""Sections, trajectories and cuts of a solved fabric, as the paper's Fig. 15 to 18 draw them, its models compared, and
+what simulations of its cell gave (Fig. 3, 4 and 22a).
 
-Each function draws on Matplotlib axes it is given; lengths mm.
+Each function draws on Matplotlib axes it is given; lengths mm. Those of simulations make a figure of their own where
+they are given none, and return the figure either way.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, CloughTocher2DInterpolator
 
 from .colours import COLOURS
 from .comparison import MODELS, TOLERANCE, Model, crossing_gap
 from .sections import KINDS, Section, contact_section, free_section
+from .simulation.penetration import valid_until
 from .solved import SolvedFabric, point_columns
 from .splines import Spline
 from .sweeps import control_planes, control_sections, trajectory
@@ -193,3 +198,103 @@ def plot_gap_maps(fabric: SolvedFabric, axes, weft: int = 1, warp: int = 1):
         ax.set_title(model.title, fontsize="medium")
         ax.label_outer()
     return drawn
+
+
+def plot_tension_curves(columns: Mapping[str, Sequence[float]], axes=None):
+    """Tension T11 of a weft against the strain E11 along it, a curve per ratio k = E22/E11 (Fig. 3); the figure.
+
+    ``columns``, of equal length: ``k`` (NaN for points of a grid, which are not drawn; inf where
+    E11 is 0), ``E11``, ``E22``, and ``T11``, ``T22`` in N a yarn. With k = inf T11 stands on a vertical
+    line: T22 against E22 is drawn instead, dashed.
+    """
+    k, e11, e22, t11, t22 = (np.asarray(columns[name], dtype=float) for name in ("k", "E11", "E22", "T11", "T22"))
+    figure, axes = _drawn_on(axes)
+    ratios = np.unique(k[~np.isnan(k)])
+    for ratio, colour in zip(ratios, _shades(len(ratios))):
+        here, along = k == ratio, bool(np.isfinite(ratio))
+        strain, tension = (e11[here], t11[here]) if along else (e22[here], t22[here])
+        order = np.argsort(strain, kind="stable")
+        label = f"k = {ratio:g}" if along else "k = \u221e, T22 against E22"
+        axes.plot(
+            100 * strain[order],
+            tension[order],
+            color=colour,
+            linestyle="-" if along else "--",
+            marker="o",
+            markersize=3.5,
+            label=label,
+        )
+    axes.set(xlabel="E11 %", ylabel="T11 N a yarn", title="tension for ratios of strain k = E22/E11")
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False)
+    return figure
+
+
+def plot_tension_surface(columns: Mapping[str, Sequence[float]], axes=None):
+    """The tension surfaces T11 and T22 over (E11, E22) and the points computed, in 3D (Fig. 4, 22a); the figure.
+
+    ``axes`` are two with the projection ``3d``. ``columns`` as for :func:`plot_tension_curves`,
+    points of a grid included; ``k`` is not needed. The surfaces pass smoothly through all points and
+    end at their convex hull. Raises ValueError where all points lie on one line.
+    """
+    figure, axes = _drawn_on(axes, 2, (11, 5), projection="3d")
+    at = 100 * np.column_stack([columns["E11"], columns["E22"]])
+    _, first = np.unique(at.round(9), axis=0, return_index=True)
+    at = at[first]
+    if np.linalg.matrix_rank(at - at.mean(axis=0), tol=1e-9) < 2:
+        raise ValueError("the strains of all points lie on one line: they span no surface")
+    grid = np.meshgrid(*(np.linspace(low, high, _POINTS) for low, high in zip(at.min(axis=0), at.max(axis=0))))
+    for ax, name, direction in zip(axes, ("T11", "T22"), DIRECTIONS):
+        tension = np.asarray(columns[name], dtype=float)[first]
+        surface = CloughTocher2DInterpolator(at, tension, rescale=True)(*grid)
+        ax.plot_surface(*grid, surface, cmap="viridis", vmin=tension.min(), vmax=tension.max(), alpha=0.85, linewidth=0)
+        ax.plot(*at.T, tension, linestyle="", marker="o", markersize=3, color="black", zorder=10)
+        ax.set(xlabel="E11 %", ylabel="E22 %", zlabel=f"{name} N a yarn", title=f"tension of the {direction}")
+        ax.locator_params(nbins=5)
+        ax.view_init(elev=24, azim=-125)
+    return figure
+
+
+def plot_shear_curve(columns: Mapping[str, Sequence[float]], axes=None, allowed: float = 0.01):
+    """Shear moment of a cell and shear force against the angle, and where contact ceases to be valid; the figure.
+
+    ``columns``, of equal length: ``angle_deg`` ascending, ``moment_N_mm`` of a cell (left axis),
+    ``force_N_per_mm`` (right axis) and ``penetration_mm``. Beyond the angle at which yarns penetrate by
+    more than ``allowed`` mm the ground is grey.
+    """
+    angle, moment, force, depth = (
+        np.asarray(columns[name], dtype=float)
+        for name in ("angle_deg", "moment_N_mm", "force_N_per_mm", "penetration_mm")
+    )
+    figure, axes = _drawn_on(axes)
+    right = axes.twinx()
+    first, second = COLOURS["warp"], COLOURS["weft"]
+    lines = axes.plot(angle, moment, color=first, marker="o", markersize=3.5, label="moment")
+    lines += right.plot(angle, force, color=second, marker="s", markersize=3.5, linestyle="--", label="force")
+    if (depth > allowed).any():
+        valid = valid_until(angle, depth, allowed)
+        label = f"penetration {allowed:g} mm, {valid:.1f}\u00b0"
+        lines.append(axes.axvline(valid, color=_PENETRATION, linewidth=1.2, label=label))
+        axes.axvspan(valid, angle[-1], color="0.92", zorder=0)
+    axes.set(xlabel="shear angle, degrees", title="in-plane shear")
+    for ax, name, colour in ((axes, "moment of a cell, N mm", first), (right, "force, N/mm", second)):
+        ax.set_ylabel(name, color=colour)
+        ax.tick_params(axis="y", labelcolor=colour)
+    axes.legend(handles=lines, frameon=False, loc="upper left")
+    return figure
+
+
+def _drawn_on(axes, count: int = 1, size: tuple[float, float] = (7, 4.5), **options):
+    """The figure of the axes given, or a new one of ``count`` beside each other, and its axes."""
+    if axes is None:
+        from matplotlib.figure import Figure
+
+        axes = Figure(size, layout="constrained").subplots(1, count, subplot_kw=options)
+    return np.ravel(axes)[0].figure, axes
+
+
+def _shades(count: int) -> list[tuple[float, ...]]:
+    """Colours from dark to light, as many as there are curves."""
+    from matplotlib import colormaps
+
+    return [tuple(colour) for colour in colormaps["viridis"](np.linspace(0.0, 0.85, count))]
