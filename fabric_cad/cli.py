@@ -72,6 +72,33 @@ def _parser() -> argparse.ArgumentParser:
         default="calculix",
         help="dialect of the .inp; abaqus adds the *DISTRIBUTION TABLE that CalculiX does not know (default: calculix)",
     )
+    for name, run, text in (
+        ("tension", _tension, "stretch a row's cell biaxially with CalculiX: curves and surfaces of tension"),
+        ("shear", _shear, "shear a row's cell with CalculiX: moment and force against the angle"),
+    ):
+        case = command(name, run, f"{text}; materials and loads: FAMILIES/simulation.toml")
+        case.add_argument("row", metavar="ROW", help="name of a row of any family table")
+        for option, kind, metavar, explained in _MESH:
+            coarser = explained.split(" (default")[0] + (
+                " (default: simulation.toml)" if "(default" in explained else ""
+            )
+            case.add_argument(f"--{option}", type=kind, metavar=metavar, help=coarser)
+        case.add_argument("--ccx", metavar="PATH", help="the CalculiX solver (default: ccx on the PATH)")
+        case.add_argument(
+            "--threads", type=_positive(int), metavar="N", help="threads of the solver (default: all cores)"
+        )
+        case.add_argument(
+            "--time-limit",
+            type=_positive(float),
+            metavar="S",
+            default=3600.0,
+            help="seconds for a solver job (default 3600)",
+        )
+        case.add_argument(
+            "--deck",
+            choices=("calculix", "abaqus"),
+            help="write the deck in a solver's dialect and run nothing",
+        )
     show = command("show", _show, "show a row's cell in a window; makes it first if it is not there")
     show.add_argument("row", metavar="ROW", help="name of a row of any family table")
     wif = command("wif", _wif, "print a weaving draft (.wif) as a row to paste into pattern.csv")
@@ -142,6 +169,13 @@ class _Progress:
         else:
             start = "\r\033[K" if self.terminal else ""
             print(f"{start}  {name:14}{seconds:6.2f} s", file=sys.stderr, flush=True)
+
+    def solver(self, at) -> None:
+        """An increment of a solver job, as :class:`fabric_cad.simulation.solver.Progress`."""
+        if not self.quiet:
+            start, end = ("\r\033[K", "") if self.terminal else ("", "\n")
+            text = f"  state {at.step} of {at.steps}, increment {at.increment}: {100 * at.load:.0f} % of its load"
+            print(f"{start}{text}", end=end, file=sys.stderr, flush=True)
 
 
 def _tables(settings) -> tuple[dict, list[InputError]]:
@@ -280,6 +314,61 @@ def _cell(settings) -> int:
             "report.json",
         ):
             print(f"  {folder / name}")
+    return 0
+
+
+def _positive(kind: type):
+    """An option's reader: a number of a kind, above 0."""
+
+    def read(text: str):
+        value = kind(text)
+        if not value > 0:
+            raise ValueError
+        return value
+
+    read.__name__ = f"{kind.__name__} above 0"
+    return read
+
+
+def _tension(settings) -> int:
+    from .simulation.run import make_tension
+
+    return _simulate(settings, "tension", make_tension)
+
+
+def _shear(settings) -> int:
+    from .simulation.run import make_shear
+
+    return _simulate(settings, "shear", make_shear)
+
+
+def _simulate(settings, kind: str, make) -> int:
+    """Run a case, or write its deck alone."""
+    from .pipeline import Stages, find_row
+    from .simulation.job import Solver
+    from .simulation.run import write_case
+    from .simulation.solver import find_solver
+    from .simulation.summary import summary
+
+    row, others = find_row(settings.families, settings.row)
+    if not settings.quiet:
+        for error in others:
+            print(f"note, in a table this row is not of: {error}", file=sys.stderr)
+    progress = _Progress(settings.quiet)
+    mesh = {name: getattr(settings, name) for name, *_ in _MESH if getattr(settings, name) is not None}
+    options = {"mesh": mesh, "stages": Stages(progress)}
+    if settings.deck:
+        for deck in write_case(kind, row, settings.families, settings.out, settings.deck, **options):
+            if not settings.quiet:
+                print(f"  {deck}")
+        return 0
+    threads = settings.threads or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    solver = Solver(find_solver(settings.ccx), threads, settings.time_limit, progress.solver)
+    report = make(row, settings.families, settings.out, solver, **options)
+    if not settings.quiet:
+        print(summary(report))
+        for file in report["files"]:
+            print(f"  {Path(settings.out) / settings.row / file}")
     return 0
 
 

@@ -203,15 +203,15 @@ def plot_gap_maps(fabric: SolvedFabric, axes, weft: int = 1, warp: int = 1):
 def plot_tension_curves(columns: Mapping[str, Sequence[float]], axes=None):
     """Tension T11 of a weft against the strain E11 along it, a curve per ratio k = E22/E11 (Fig. 3); the figure.
 
-    ``columns``, of equal length: ``k`` (NaN for points of a grid, which are not drawn; inf where
-    E11 is 0), ``E11``, ``E22``, and ``T11``, ``T22`` in N a yarn. With k = inf T11 stands on a vertical
-    line: T22 against E22 is drawn instead, dashed.
+    ``columns``, of equal length: ``k`` (NaN for points of a grid, which are not drawn unless they are
+    of rest, where every curve starts; inf where E11 is 0), ``E11``, ``E22``, and ``T11``, ``T22`` in N
+    a yarn. With k = inf T11 stands on a vertical line: T22 against E22 is drawn instead, dashed.
     """
     k, e11, e22, t11, t22 = (np.asarray(columns[name], dtype=float) for name in ("k", "E11", "E22", "T11", "T22"))
     figure, axes = _drawn_on(axes)
     ratios = np.unique(k[~np.isnan(k)])
     for ratio, colour in zip(ratios, _shades(len(ratios))):
-        here, along = k == ratio, bool(np.isfinite(ratio))
+        here, along = (k == ratio) | ((e11 == 0) & (e22 == 0)), bool(np.isfinite(ratio))
         strain, tension = (e11[here], t11[here]) if along else (e22[here], t22[here])
         order = np.argsort(strain, kind="stable")
         label = f"k = {ratio:g}" if along else "k = \u221e, T22 against E22"

@@ -252,26 +252,22 @@ class Boundary(Keyword):
 
     def lines(self, dialect: str) -> Iterator[str]:
         yield "*BOUNDARY\n"
-        yield from (f"{node}, {direction}, {direction}, {value:.12g}\n" for node, direction, value in self.displacements)
+        yield from (
+            f"{node}, {direction}, {direction}, {value:.12g}\n" for node, direction, value in self.displacements
+        )
 
 
 @dataclass(frozen=True)
 class Output(Keyword):
-    """Results to write at the end of a step: fields, contact, per set of ``force_sets`` the sum of its nodes' forces.
-
-    ``energy_sets`` are element sets whose strain energy is summed.
-    """
+    """Results to write at the end of a step: fields, contact, per set of ``force_sets`` the sum of its nodes' forces."""
 
     force_sets: tuple[str, ...]
-    energy_sets: tuple[str, ...] = ()
     contact: bool = True
 
     def lines(self, dialect: str) -> Iterator[str]:
         sums = f"TOTALS={'YES' if dialect == 'abaqus' else 'ONLY'}, FREQUENCY={_AT_END}"
         for name in self.force_sets:
             yield f"*NODE PRINT, NSET={name}, {sums}\nRF\n"
-        for name in self.energy_sets:
-            yield f"*EL PRINT, ELSET={name}, {sums}\nELSE\n"
         if dialect == "abaqus":
             yield f"*OUTPUT, FIELD, FREQUENCY={_AT_END}\n*NODE OUTPUT\nU, RF\n*ELEMENT OUTPUT\nS, E\n"
             if self.contact:

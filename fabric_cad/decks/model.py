@@ -86,8 +86,7 @@ def model_keywords(
     for name in DIRECTIONS:
         yield NodeSet(f"{name}_ends", tuple(f"{yarn}_end" for yarn in mesh.yarns if yarn.startswith(name)))
     yield Boundary(fixings(mesh))
-    energies = (*DIRECTIONS, *(("compaction",) if hardening else ()))
-    output = Output(tuple(f"{name}_ends" for name in DIRECTIONS), energies, contact=touch.kind == "penalty")
+    output = Output(tuple(f"{name}_ends" for name in DIRECTIONS), contact=touch.kind == "penalty")
     for load in loads:
         moved = [(name, getattr(load, name)) for name in DIRECTIONS]
         driven = [(reference[name], axis, value) for name, change in moved for axis, value in enumerate(change, 1)]
@@ -134,7 +133,7 @@ def periodic_equations(mesh: Mesh, period: tuple[float, float], reference: dict[
 
 
 def fixings(mesh: Mesh) -> tuple[tuple[int, int, float], ...]:
-    """Displacements that hold the whole cell: the middle of the first weft's start in x and z, of the first warp's in y."""
+    """Displacements that hold the whole cell: the middle of weft 1's start in x and z, of warp 1's in y."""
     held = []
     for yarn, axes in (("weft_1", (1, 3)), ("warp_1", (2,))):
         if f"{yarn}_start" in mesh.surfaces:

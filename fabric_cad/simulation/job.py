@@ -1,6 +1,6 @@
 """One solver job: a deck through a row of loads, and what its output files say of every state.
 
-    mesh, loads --model--> <stem>.inp --ccx--> <stem>.frd, .dat, .log --readers--> Job
+mesh, loads --model--> <stem>.inp --ccx--> <stem>.frd, .dat, .log --readers--> Job
 """
 
 from __future__ import annotations
@@ -16,8 +16,10 @@ from ..decks.keywords import EngineeringConstants, write_keywords
 from ..decks.model import Load, Touch, model_keywords
 from ..meshing.mesh import Mesh
 from ..weaves import DIRECTIONS
+from .energy import cell_energy
+from .penetration import penetration
 from .results import State, read_dat, read_frd
-from .settings import Settings
+from .settings import Settings, YarnLaw
 from .solver import Progress, Run, run_solver
 
 _STRESS_FREE = 1e-6  # MPa: contact pressure above which a node counts as touching
@@ -39,9 +41,9 @@ class Reached:
 
     ``forces`` (2, 3) N: sum over the wefts' ends and over the warps' ends of what the neighbouring
     cells pull with; ``displacement`` (nodes, 3) mm; ``strain`` (nodes, 6) Green's, axes xx, yy, zz,
-    xy, yz, zx; ``pressure`` (nodes,) MPa, NaN off the weft's contact surfaces; ``energy`` N mm of
-    the yarns' strain; ``overclosure`` mm, the largest by which contact surfaces overlap, and
-    ``share`` of the patches' area under pressure, both NaN where yarns are tied.
+    xy, yz, zx; ``pressure`` (nodes,) MPa, NaN off the weft's contact surfaces; ``overclosure``
+    mm, the largest by which contact surfaces overlap, and ``share`` of the patches' area under
+    pressure, both NaN where yarns are tied.
     """
 
     load: Load
@@ -49,9 +51,15 @@ class Reached:
     displacement: np.ndarray
     strain: np.ndarray
     pressure: np.ndarray
-    energy: float
     overclosure: float
     share: float
+
+
+def at_rest(mesh: Mesh) -> Reached:
+    """The cell before any load: nothing moved, nothing pressed."""
+    zero = np.zeros(len(mesh.points))
+    none = Load("rest", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    return Reached(none, np.zeros((2, 3)), np.zeros((len(zero), 3)), np.zeros((len(zero), 6)), zero, 0.0, np.nan)
 
 
 @dataclass(frozen=True)
@@ -86,32 +94,27 @@ def run_job(deck: Path, mesh: Mesh, loads: tuple[Load, ...], solver: Solver) -> 
 
     Raises :class:`SolverError` where the solver cannot be started.
     """
-    run = run_solver(
-        deck, solver.path, threads=solver.threads, time_limit=solver.time_limit, listen=solver.listen
-    )
+    run = run_solver(deck, solver.path, threads=solver.threads, time_limit=solver.time_limit, listen=solver.listen)
+    for useless in (deck.with_suffix(".12d"), deck.with_name("spooles.out")):
+        useless.unlink(missing_ok=True)
     if not run.increments:
         return Job(run, ())
     forces: dict[int, dict[str, np.ndarray]] = {}
-    energies: dict[int, float] = {}
     for each in read_dat(deck.with_suffix(".dat")):
         step = round(each.time)  # every step takes a time of 1 and prints at its end
         if each.quantity == "RF":
             forces.setdefault(step, {})[each.name.lower()] = each.values
-        elif each.quantity == "ELSE":
-            energies[step] = energies.get(step, 0.0) + float(each.values[0])
     weights = _patch_areas(mesh)
     reached = []
     for state in read_frd(deck.with_suffix(".frd")):
         if abs(state.time - state.step) > 1e-4:
             continue  # a step's load reached in part
         pulls = np.array([forces[state.step].get(f"{name}_ends", np.full(3, np.nan)) for name in DIRECTIONS])
-        reached.append(_reached(mesh, loads[state.step - 1], state, pulls, energies[state.step], weights))
+        reached.append(_reached(mesh, loads[state.step - 1], state, pulls, weights))
     return Job(run, tuple(reached))
 
 
-def _reached(
-    mesh: Mesh, load: Load, state: State, forces: np.ndarray, energy: float, weights: np.ndarray
-) -> Reached:
+def _reached(mesh: Mesh, load: Load, state: State, forces: np.ndarray, weights: np.ndarray) -> Reached:
     count = len(mesh.points)
     contact = state.fields.get("CONTACT")
     pressure = np.full(count, np.nan)
@@ -124,7 +127,7 @@ def _reached(
         overclosure = max(0.0, float(-np.nanmin(opening)))
         share = float(weights[np.nan_to_num(pressure) > _STRESS_FREE].sum() / weights.sum())
     displacement, strain = state.fields["DISP"][:count], state.fields["TOSTRAIN"][:count]
-    return Reached(load, forces, displacement, strain, pressure, energy, overclosure, share)
+    return Reached(load, forces, displacement, strain, pressure, overclosure, share)
 
 
 def _patch_areas(mesh: Mesh) -> np.ndarray:
@@ -137,6 +140,22 @@ def _patch_areas(mesh: Mesh) -> np.ndarray:
         normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
         np.add.at(areas, quads, np.linalg.norm(normal, axis=1)[:, None] / 8)
     return areas
+
+
+def condition(mesh: Mesh, law: YarnLaw, reached: Reached, vectors: np.ndarray) -> dict[str, float]:
+    """What tells whether a state can be trusted; ``vectors`` (2, 3) mm of the deformed cell.
+
+    ``contact_penetration_mm`` between the contact surfaces and ``penetration_mm`` between any two yarns, measured
+    on their deformed shapes; ``contact_share`` of the patches; strain energy; the least volume ratio in an element.
+    """
+    energy = cell_energy(mesh, reached.displacement, law)
+    return {
+        "contact_penetration_mm": reached.overclosure,
+        "penetration_mm": penetration(mesh, mesh.points + reached.displacement, vectors).depth,
+        "contact_share": reached.share,
+        "strain_energy_N_mm": energy.strain,
+        "least_volume_ratio": energy.least_volume_ratio,
+    }
 
 
 def transverse_strains(mesh: Mesh, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,6 @@
 """A row's cell under load, from the family table to the files in its folder.
 
-    row -> solved fabric -> STEP -> coarse hexahedra -> deck -> ccx -> table, pictures, report
+row -> solved fabric -> STEP -> coarse hexahedra -> deck -> ccx -> table, pictures, report
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import csv
 import json
 import math
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -22,10 +22,11 @@ from ..pipeline import Stages
 from ..solved import SolvedFabric
 from ..staging import staged
 from ..tables import Family
-from .job import Job, Reached, Solver, run_job, transverse_strains, write_model
+from .job import Job, Reached, Solver, at_rest, condition, run_job, transverse_strains, write_model
+from .penetration import valid_until
 from .settings import Settings, read_settings
-from .shear import angles, cell_vectors, shear_loads, shear_rows, valid_angle
-from .tension import paths, tension_loads, tension_rows
+from .shear import angles, cell_vectors, shear_loads, shear_row
+from .tension import by_curve, paths, tension_loads, tension_row
 
 INCOMPLETE = "incomplete"
 
@@ -99,7 +100,7 @@ def _make(
             if not jobs[-1].run.finished:
                 break
         rows, found = work(case, jobs)
-        report = _report(case, name, jobs, found)
+        report = _report(case, name, jobs, rows, found)
         _write_table(case.path(".csv"), rows)
         case.path(".json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
         if not jobs[-1].run.finished:
@@ -125,7 +126,7 @@ def _prepared(
 
 
 def _cell(row: Family, settings: Settings, options: dict[str, int | float], folder: Path, stages: Stages) -> Cell:
-    """The row's cell, meshed as coarsely as its settings ask for. Raises :class:`BuildError` where the mesh is unsound."""
+    """The row's cell, meshed as its settings ask for. Raises :class:`BuildError` where the mesh is unsound."""
     from ..identification import identify
     from ..meshing.options import mesh_options
     from ..report import contact_pairing, end_pairing
@@ -185,57 +186,69 @@ def _decks(case: Case, dialect: str) -> list[tuple[Path, tuple[Load, ...]]]:
 
 def _tension(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
     """Table, report and pictures of a tension case."""
-    cell, tension = case.cell, case.settings.tension
-    computed = paths(tension, case.settings.contact)
+    mesh, period, tension = case.cell.mesh, case.cell.fabric.period, case.settings.tension
+    states = [
+        state for path, job in zip(paths(tension, case.settings.contact), jobs) for state in path[: len(job.reached)]
+    ]
+    reached = [at_rest(mesh), *(each for job in jobs for each in job.reached)]
+    states.insert(0, (0.0, 0.0))
     with case.stages("penetration"):
-        vectors = [[np.diag([*cell.fabric.period, 0.0])[:2] * (1 + np.array(state))[:, None] for state in path] for path in computed]
-        depths = [_depths(cell.mesh, job.reached, at) for job, at in zip(jobs, vectors)]
-    rows = tension_rows(cell.mesh, cell.fabric.period, tension, computed, jobs, depths)
-    if len(rows) > 1:
+        conditions = [
+            condition(mesh, case.settings.yarn, each, (1 + np.array(state))[:, None] * cell_vectors(period, 0.0))
+            for state, each in zip(states, reached)
+        ]
+    rows = [tension_row(mesh, period, *of) for of in zip(states, reached, conditions)]
+    rows = by_curve(rows, tension)
+    if len(reached) > 1:
         with case.stages("pictures"):
-            from ..plots import plot_tension_curves, plot_tension_surface
+            _draw_tension(case, rows)
+            # the state of largest equal strains, as far as the solver came
+            _draw_cell(case, max(zip(states, reached), key=lambda of: (min(of[0]), max(of[0])))[1])
+    ends = {row["k"]: row for row in rows if not math.isnan(row["k"])}  # the last state of every curve
+    return rows, {"largest": [_plain(row) for row in ends.values()]}
 
-            columns = {name: [row[name] for row in rows] for name in rows[0]}
-            columns |= {name: columns[f"{name}_N_per_yarn"] for name in ("T11", "T22")}
-            plot_tension_curves(columns).savefig(case.path("_curves.png"), dpi=150)
-            plot_tension_surface(columns).savefig(case.path("_surface.png"), dpi=150)
-            _pictures(case, _most_equal(computed, jobs))
-    return rows, {"balanced_difference_percent": _difference(rows)}
+
+def _draw_tension(case: Case, rows: list[dict]) -> None:
+    from ..plots import plot_tension_curves, plot_tension_surface
+
+    columns = {name: [row[name] for row in rows] for name in rows[0]}
+    columns |= {name: columns[f"{name}_N_per_yarn"] for name in ("T11", "T22")}
+    plot_tension_curves(columns).savefig(case.path("_curves.png"), dpi=150)
+    if np.ptp(columns["E11"]) and np.ptp(columns["E22"]):
+        plot_tension_surface(columns).savefig(case.path("_surface.png"), dpi=150)
 
 
 def _shear(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
     """Table, report and pictures of a shear case."""
-    cell, shear = case.cell, case.settings.shear
-    vectors = [cell_vectors(cell.fabric.period, angle, shear.strain) for angle in angles(shear)]
+    mesh, fabric, shear = case.cell.mesh, case.cell.fabric, case.settings.shear
+    states = list(angles(shear)[: len(jobs[0].reached)])
+    reached = list(jobs[0].reached)
+    if not shear.strain:
+        states, reached = [0.0, *states], [at_rest(mesh), *reached]
     with case.stages("penetration"):
-        depths = _depths(cell.mesh, jobs[0].reached, vectors)
-    rows = shear_rows(cell.mesh, cell.fabric.period, shear, jobs[0], depths)
-    valid = valid_angle(shear, min(each.thickness for each in cell.fabric.directions.values()), depths)
-    if rows:
+        conditions = [
+            condition(mesh, case.settings.yarn, each, cell_vectors(fabric.period, angle, shear.strain))
+            for angle, each in zip(states, reached)
+        ]
+    rows = [shear_row(mesh, fabric.period, angle, shear.strain, *of) for angle, *of in zip(states, reached, conditions)]
+    depths = [row["penetration_mm"] for row in rows]
+    bound = shear.valid_penetration * min(each.thickness for each in fabric.directions.values())
+    if len(rows) > 1:
         with case.stages("pictures"):
             from ..plots import plot_shear_curve
 
             columns = {name: [row[name] for row in rows] for name in rows[0]}
-            plot_shear_curve(columns, allowed=valid.bound).savefig(case.path("_curve.png"), dpi=150)
-            _pictures(case, jobs[0].reached[-1])
-    found = {"valid_up_to_deg": valid.angle, "valid_penetration_mm": valid.bound, "contact_lost_validity": valid.ended}
-    return rows, found
+            plot_shear_curve(columns, allowed=bound).savefig(case.path("_curve.png"), dpi=150)
+            _draw_cell(case, reached[-1])
+    return rows, {
+        "valid_up_to_deg": valid_until(states, depths, bound) if states else 0.0,
+        "valid_penetration_mm": bound,
+        "penetration_exceeded": any(depth > bound for depth in depths),
+        "largest": _plain(rows[-1]) if rows else None,
+    }
 
 
-def _depths(mesh: Mesh, reached: Sequence[Reached], vectors: Sequence[np.ndarray]) -> list[float]:
-    """Largest geometric penetration (mm) of the deformed yarns, state by state."""
-    from .penetration import penetration
-
-    return [penetration(mesh, mesh.points + each.displacement, at).depth for each, at in zip(reached, vectors)]
-
-
-def _most_equal(computed, jobs: list[Job]) -> Reached:
-    """The state with the largest strain in both directions, as far as it was reached."""
-    states = [(min(at), max(at), each) for path, job in zip(computed, jobs) for at, each in zip(path, job.reached)]
-    return max(states, key=lambda state: state[:2])[2]
-
-
-def _pictures(case: Case, state: Reached) -> None:
+def _draw_cell(case: Case, state: Reached) -> None:
     """The deformed cell of Fig. 22b-d and its ParaView file."""
     from ..views import draw_deformed, write_deformed_vtu
 
@@ -244,9 +257,15 @@ def _pictures(case: Case, state: Reached) -> None:
     fields = {"strain_across": across, "strain_through": through, "contact_pressure_MPa": state.pressure}
     write_deformed_vtu(mesh, state.displacement, fields, {"fibre_axis": mesh.fibre_axes()}, case.path(".vtu"))
     draw_deformed(
-        mesh, state.displacement, case.path("_normal.png"), state.displacement[:, 2], "displacement in z, mm", hide=("weft_1",)
+        mesh,
+        state.displacement,
+        case.path("_normal.png"),
+        state.displacement[:, 2],
+        "displacement in z, mm",
+        hide=("weft_1",),
     )
-    draw_deformed(mesh, state.displacement, case.path("_crushing.png"), initial=True, scale=_magnified(mesh, state))
+    if case.kind == "tension":
+        draw_deformed(mesh, state.displacement, case.path("_crushing.png"), initial=True, scale=_magnified(mesh, state))
     draw_deformed(mesh, state.displacement, case.path("_strain.png"), through, "strain through the yarn")
     if not np.isnan(state.pressure).all():
         draw_deformed(
@@ -269,16 +288,12 @@ def _magnified(mesh: Mesh, state: Reached) -> float:
     return max(step * power for step in (1, 2, 5) if step * power <= wanted)
 
 
-def _difference(rows: list[dict]) -> float | None:
-    """Difference of T22 from T11 (%) at the largest strain of the curve k = 1."""
-    equal = [row for row in rows if row["k"] == 1 and row["T11_N_per_yarn"]]
-    if not equal:
-        return None
-    last = max(equal, key=lambda row: row["E11"])
-    return 100 * (last["T22_N_per_yarn"] / last["T11_N_per_yarn"] - 1)
+def _plain(row: dict[str, float]) -> dict:
+    """A row for JSON, which knows neither infinity nor NaN."""
+    return {key: None if math.isnan(value) else _finite(float(value)) for key, value in row.items()}
 
 
-def _report(case: Case, name: str, jobs: list[Job], found: dict) -> dict:
+def _report(case: Case, name: str, jobs: list[Job], rows: list[dict], found: dict) -> dict:
     """The content of ``tension.json`` or ``shear.json``."""
     reached = [each for job in jobs for each in job.reached]
     settings = asdict(case.settings)
@@ -302,9 +317,12 @@ def _report(case: Case, name: str, jobs: list[Job], found: dict) -> dict:
         },
         "contact": {
             "max_contact_penetration_mm": _extreme(max, [each.overclosure for each in reached]),
+            "max_penetration_mm": _extreme(max, [row["penetration_mm"] for row in rows]),
             "min_contact_share": _extreme(min, [each.share for each in reached]),
+            "least_volume_ratio": _extreme(min, [row["least_volume_ratio"] for row in rows]),
         },
         **found,
+        "files": sorted([*(file.name for file in case.folder.iterdir()), f"{case.kind}.csv", f"{case.kind}.json"]),
         "seconds": {key: round(value, 4) for key, value in case.stages.seconds.items()},
     }
 

@@ -181,7 +181,9 @@ def read_settings(families: str | Path, row: str) -> Settings:
     settings = Settings(**{table: kind(**merged[table]) for table, kind in _TABLES.items()})
     if np.linalg.eigvalsh(settings.yarn.compliance).min() <= 0:
         last = layers[-1]
-        raise InputError(last.problem("yarn", "nu12", "the yarn's moduli and Poisson ratios give no stable material", row))
+        raise InputError(
+            last.problem("yarn", "nu12", "the yarn's moduli and Poisson ratios give no stable material", row)
+        )
     return settings
 
 

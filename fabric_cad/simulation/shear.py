@@ -7,13 +7,13 @@ yarn ends' forces, work-conjugate to the angle between the directions.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..decks.model import Load
 from ..meshing.mesh import Mesh
-from .job import Job
+from ..weaves import DIRECTIONS
+from .job import Reached
 from .settings import ShearCase
 
 
@@ -47,58 +47,23 @@ def moment(period: tuple[float, float], angle: float, strain: float, forces: np.
     return float(((1 + strain) * np.array(period)[:, None] * turning * forces).sum())
 
 
-def shear_rows(
-    mesh: Mesh, period: tuple[float, float], case: ShearCase, job: Job, depths: list[float]
-) -> list[dict[str, float]]:
-    """The lines of ``shear.csv``, one an angle; ``depths`` (mm) as in :func:`valid_angle`.
+def shear_row(
+    mesh: Mesh, period: tuple[float, float], angle: float, strain: float, reached: Reached, condition: dict[str, float]
+) -> dict[str, float]:
+    """The line of ``shear.csv`` for one angle (degrees); ``condition`` as of :func:`.job.condition`.
 
     ``force_N_per_mm`` is the moment per area of the cell: the force along a side, per mm of it.
     """
-    yarns = [sum(name.startswith(direction) for name in mesh.yarns) for direction in ("weft", "warp")]
-    rows = []
-    for angle, reached, depth in zip(angles(case), job.reached, depths):
-        couple = moment(period, angle, case.strain, reached.forces)
-        vectors = cell_vectors(period, angle, case.strain)
-        pulls = (reached.forces * vectors).sum(axis=1) / np.linalg.norm(vectors, axis=1)
-        rows.append(
-            {
-                "angle_deg": angle,
-                "moment_N_mm": couple,
-                "force_N_per_mm": couple / (period[0] * period[1]),
-                "T11_N_per_yarn": pulls[0] / yarns[0],
-                "T22_N_per_yarn": pulls[1] / yarns[1],
-                "thickness_mm": float(np.ptp(mesh.points[:, 2] + reached.displacement[:, 2])),
-                "contact_penetration_mm": reached.overclosure,
-                "penetration_mm": depth,
-                "contact_share": reached.share,
-                "strain_energy_N_mm": reached.energy,
-            }
-        )
-    return rows
-
-
-@dataclass(frozen=True)
-class Validity:
-    """Up to which angle (degrees) yarns keep out of each other; ``bound`` mm is the penetration allowed.
-
-    ``ended`` tells whether a larger angle was computed and found beyond the bound.
-    """
-
-    angle: float
-    bound: float
-    ended: bool
-
-
-def valid_angle(case: ShearCase, thickness: float, depths: list[float]) -> Validity:
-    """The angle at which the penetration (mm, one an angle computed) passes its share of ``thickness`` (mm).
-
-    Between two angles the penetration is taken as linear.
-    """
-    bound = case.valid_penetration * thickness
-    last_angle = last_depth = 0.0
-    for angle, depth in zip(angles(case), depths):
-        if depth > bound:
-            share = (bound - last_depth) / (depth - last_depth) if last_depth <= bound else 0.0
-            return Validity(last_angle + share * (angle - last_angle), bound, True)
-        last_angle, last_depth = angle, depth
-    return Validity(last_angle, bound, False)
+    yarns = [sum(name.startswith(direction) for name in mesh.yarns) for direction in DIRECTIONS]
+    couple = moment(period, angle, strain, reached.forces)
+    vectors = cell_vectors(period, angle, strain)
+    pulls = (reached.forces * vectors).sum(axis=1) / np.linalg.norm(vectors, axis=1)
+    return {
+        "angle_deg": angle,
+        "moment_N_mm": couple,
+        "force_N_per_mm": couple / (period[0] * period[1]),
+        "T11_N_per_yarn": pulls[0] / yarns[0],
+        "T22_N_per_yarn": pulls[1] / yarns[1],
+        "thickness_mm": float(np.ptp(mesh.points[:, 2] + reached.displacement[:, 2])),
+        **condition,
+    }

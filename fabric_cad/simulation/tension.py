@@ -13,7 +13,8 @@ import numpy as np
 
 from ..decks.model import Load
 from ..meshing.mesh import Mesh
-from .job import Job, widths
+from ..weaves import DIRECTIONS
+from .job import Reached, widths
 from .settings import ContactLaw, TensionCase
 
 _SAME = 1e-9  # by which two strains may differ and be one state
@@ -71,58 +72,37 @@ def tension_loads(period: tuple[float, float], states: tuple[tuple[float, float]
     )
 
 
-def tension_rows(
-    mesh: Mesh,
-    period: tuple[float, float],
-    case: TensionCase,
-    computed: list[tuple[tuple[float, float], ...]],
-    jobs: list[Job],
-    depths: list[list[float]],
-) -> list[dict[str, float]]:
-    """The lines of ``tension.csv``, one a state and curve: rest, the curves, then what only the grid has.
-
-    ``computed`` are the paths of ``jobs``; ``depths`` the geometric penetration (mm) of every state reached.
-    """
-    yarns = [sum(name.startswith(direction) for name in mesh.yarns) for direction in ("weft", "warp")]
-    rest = np.ptp(mesh.points[:, 2]), *widths(mesh, mesh.points)
-    rows = []
-    for path, job, job_depths in zip(computed, jobs, depths):
-        for (weft, warp), reached, depth in zip(path, job.reached, job_depths):
-            points = mesh.points + reached.displacement
-            pulls = reached.forces[0, 0], reached.forces[1, 1]
-            wide = widths(mesh, points)
-            rows.append(
-                {
-                    "k": float("nan"),
-                    "E11": weft,
-                    "E22": warp,
-                    "T11_N_per_yarn": pulls[0] / yarns[0],
-                    "T22_N_per_yarn": pulls[1] / yarns[1],
-                    "T11_N_per_mm": pulls[0] / period[1],
-                    "T22_N_per_mm": pulls[1] / period[0],
-                    "thickness_mm": float(np.ptp(points[:, 2])),
-                    "weft_width_mm": wide[0],
-                    "warp_width_mm": wide[1],
-                    "thickness_change_percent": 100 * (float(np.ptp(points[:, 2])) / rest[0] - 1),
-                    "weft_width_change_percent": 100 * (wide[0] / rest[1] - 1),
-                    "warp_width_change_percent": 100 * (wide[1] / rest[2] - 1),
-                    "contact_penetration_mm": reached.overclosure,
-                    "penetration_mm": depth,
-                    "contact_share": reached.share,
-                    "strain_energy_N_mm": reached.energy,
-                }
-            )
-    return _by_curve(rows, case, dict(zip(rows[0], [float("nan"), *[0.0] * 6, *rest, *[0.0] * 7])) if rows else {})
+def tension_row(
+    mesh: Mesh, period: tuple[float, float], state: tuple[float, float], reached: Reached, condition: dict[str, float]
+) -> dict[str, float]:
+    """The line of ``tension.csv`` for one (E11, E22), its k still open; ``condition`` as of :func:`.job.condition`."""
+    yarns = [sum(name.startswith(direction) for name in mesh.yarns) for direction in DIRECTIONS]
+    pulls = reached.forces[0, 0], reached.forces[1, 1]
+    points = mesh.points + reached.displacement
+    before, after = ((float(np.ptp(places[:, 2])), *widths(mesh, places)) for places in (mesh.points, points))
+    sizes = ("thickness", "weft_width", "warp_width")
+    return {
+        "k": math.nan,
+        "E11": state[0],
+        "E22": state[1],
+        "T11_N_per_yarn": pulls[0] / yarns[0],
+        "T22_N_per_yarn": pulls[1] / yarns[1],
+        "T11_N_per_mm": pulls[0] / period[1],
+        "T22_N_per_mm": pulls[1] / period[0],
+        **{f"{name}_mm": value for name, value in zip(sizes, after)},
+        **{f"{name}_change_percent": 100 * (new / old - 1) for name, new, old in zip(sizes, after, before)},
+        **condition,
+    }
 
 
-def _by_curve(rows: list[dict[str, float]], case: TensionCase, rest: dict[str, float]) -> list[dict[str, float]]:
-    """Rows in the order of the curves they lie on, with their k; a state on two curves comes twice."""
-    found, used = [rest] if rest else [], set()
+def by_curve(rows: list[dict[str, float]], case: TensionCase) -> list[dict[str, float]]:
+    """Rows on no curve, then those of every curve with its k; a row on two curves comes twice."""
+    found: list[dict[str, float]] = []
+    used = set()
     for curve in curves(case):
         for state in curve.states:
-            for at, row in enumerate(rows):
-                if math.dist(state, (row["E11"], row["E22"])) <= _SAME:
-                    found.append(row | {"k": curve.ratio})
-                    used.add(at)
-                    break
-    return found + [row for at, row in enumerate(rows) if at not in used]
+            at = next((at for at, row in enumerate(rows) if math.dist(state, (row["E11"], row["E22"])) <= _SAME), None)
+            if at is not None:
+                found.append(rows[at] | {"k": curve.ratio})
+                used.add(at)
+    return [row for at, row in enumerate(rows) if at not in used] + found
