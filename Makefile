@@ -30,6 +30,14 @@ install: $(READY) ## make the environment .venv
 cell: $(READY) ## WEAVE=row: STEP, mesh, deck, picture and report of one row in build/<row>
 	@$(BIN)/fabric-cad cell $(WEAVE) $(OPTIONS)
 
+.PHONY: tension
+tension: $(READY) ## WEAVE=row: biaxial tension of its cell (needs CalculiX: ccx)
+	@$(BIN)/fabric-cad tension $(WEAVE) $(OPTIONS)
+
+.PHONY: shear
+shear: $(READY) ## WEAVE=row: in-plane shear of its cell (needs CalculiX: ccx)
+	@$(BIN)/fabric-cad shear $(WEAVE) $(OPTIONS)
+
 .PHONY: show
 show: $(READY) ## WEAVE=row: the same cell in an interactive window
 	@$(BIN)/fabric-cad show $(WEAVE)

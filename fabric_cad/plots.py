@@ -211,7 +211,7 @@ def plot_tension_curves(columns: Mapping[str, Sequence[float]], axes=None):
     figure, axes = _drawn_on(axes)
     ratios = np.unique(k[~np.isnan(k)])
     for ratio, colour in zip(ratios, _shades(len(ratios))):
-        here, along = (k == ratio) | ((e11 == 0) & (e22 == 0)), bool(np.isfinite(ratio))
+        here, along = (k == ratio) | (np.isnan(k) & (e11 == 0) & (e22 == 0)), bool(np.isfinite(ratio))
         strain, tension = (e11[here], t11[here]) if along else (e22[here], t22[here])
         order = np.argsort(strain, kind="stable")
         label = f"k = {ratio:g}" if along else "k = \u221e, T22 against E22"

@@ -4,10 +4,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from meshes import box
 
 from fabric_cad.decks.cell import write_deck
-from fabric_cad.decks.faces import element_faces
-from fabric_cad.decks.keywords import DIALECTS
+from fabric_cad.decks.faces import element_faces, touching_faces
+from fabric_cad.decks.keywords import (
+    DIALECTS,
+    Boundary,
+    EngineeringConstants,
+    Equation,
+    Hexahedra,
+    NodeSet,
+    Tie,
+    write_keywords,
+)
+from fabric_cad.decks.model import Load, Touch, model_keywords
+from fabric_cad.errors import BuildError
 from fabric_cad.meshing.mesh import Mesh
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -63,3 +75,89 @@ def test_axes_are_orthonormal_and_follow_the_yarn(two_yarns):
     assert np.linalg.norm(across, axis=1) == pytest.approx(1)
     assert (fibre * across).sum(axis=1) == pytest.approx(0)
     assert across[:, 2] == pytest.approx(0)
+
+
+def two_yarn_model(mesh, **options):
+    """Every kind of keyword: friction or a tie, compaction, two loads."""
+    law = EngineeringConstants(35000, 70, 60, 0.1, 0.2, 0.3, 30, 20, 10)
+    loads = (Load("first", (0.001, 0.0, 0.0), (0.0, 0.002, 0.0)), Load("second", (0.0, 1e-9, 0.0), (1 / 3, 0.0, 0.0)))
+    touch = Touch(options.get("kind", "penalty"), 1e4, 0.3, 1e3)
+    return model_keywords(
+        mesh, (1.0, 1.0), law, options.get("hardening", 2000.0), touch, loads, "a model\nof two yarns"
+    )
+
+
+@pytest.mark.parametrize(("kind", "dialect"), [("penalty", "calculix"), ("penalty", "abaqus"), ("tie", "calculix")])
+def test_golden_model(flat_yarns, kind, dialect, tmp_path, request):
+    write_keywords(two_yarn_model(flat_yarns, kind=kind), tmp_path / "model.inp", dialect)
+    text = (tmp_path / "model.inp").read_text()
+    golden = GOLDEN / f"model_{kind}_{dialect}.inp"
+    if request.config.getoption("--rewrite-golden"):
+        golden.write_text(text)
+    assert text == golden.read_text()
+
+
+@pytest.fixture
+def flat_yarns():
+    """A straight weft below a straight warp, one hexahedron each."""
+    corner = np.array([[0, 0, 0], [0, 1, 0], [0, 1, 1], [0, 0, 1]], dtype=float)
+    weft = np.vstack([corner, corner + [1.0, 0.0, 0.0]])
+    warp = weft[:, [1, 0, 2]] + [0.0, 0.0, 1.0]
+    warp = np.vstack([warp[[3, 2, 1, 0]], warp[[7, 6, 5, 4]]])
+    surfaces = {
+        "weft_1_contact": np.array([[2, 3, 7, 6]]),
+        "weft_1_start": np.array([[0, 3, 2, 1]]),
+        "weft_1_end": np.array([[4, 5, 6, 7]]),
+        "warp_1_contact": np.array([[10, 11, 15, 14]]),
+        "warp_1_start": np.array([[8, 11, 10, 9]]),
+        "warp_1_end": np.array([[12, 13, 14, 15]]),
+    }
+    return Mesh(np.vstack([weft, warp]), np.arange(16).reshape(2, 8), np.array([0, 1]), ("weft_1", "warp_1"), surfaces)
+
+
+def test_keywords_print_themselves():
+    assert str(Boundary(((3, 2, 0.5),))) == "*BOUNDARY\n3, 2, 2, 0.5\n"
+    assert str(Equation(((3, 1, 1.0), (2, 1, -0.5)))) == "*EQUATION\n2\n3, 1, 1, 2, 1, -0.5\n"
+    assert str(NodeSet("few", np.arange(1, 19))).splitlines()[2] == "17, 18"
+    assert str(Tie("glue", "a", "b", 0.001)) == "*TIE, NAME=glue, POSITION TOLERANCE=0.001\na, b\n"
+
+
+def test_keywords_refuse_what_does_not_fit(tmp_path):
+    with pytest.raises(ValueError, match=r"expected \(2, 8\), got \(2, 4\)"):
+        Hexahedra("few", np.arange(2), np.zeros((2, 4)))
+    with pytest.raises(ValueError, match="expected one of calculix, abaqus, got 'nastran'"):
+        write_keywords([], tmp_path / "deck.inp", "nastran")
+
+
+def test_every_end_node_is_driven_once(flat_yarns):
+    """The dependent node of an equation is in no other; its terms sum to nothing for a rigid translation."""
+    equations = [keyword for keyword in two_yarn_model(flat_yarns) if isinstance(keyword, Equation)]
+    driven = [equation.terms[0][:2] for equation in equations]
+    assert len(driven) == len(set(driven)) == 3 * 8
+    used = [term[:2] for equation in equations for term in equation.terms[1:]]
+    assert not set(driven) & set(used)
+    for equation in equations:
+        (end, axis, _), (start, _, _), (reference, _, _) = equation.terms
+        apart = flat_yarns.points[end - 1] - flat_yarns.points[start - 1]
+        assert apart == pytest.approx(np.eye(3)[reference - 17])
+        assert [factor for _, _, factor in equation.terms] == [1, -1, -1]
+
+
+def test_ends_that_do_not_match_are_refused(flat_yarns):
+    flat_yarns.points[4] += 0.01
+    with pytest.raises(BuildError, match="weft_1"):
+        list(two_yarn_model(flat_yarns))
+
+
+def test_rings_widen_the_patches_on_their_own_side():
+    yarn = box("weft_1", parts=(8, 6, 2))
+    mesh = Mesh(yarn.points, yarn.hexahedra, yarn.yarn, yarn.yarns, dict(yarn.surfaces))
+    bottom = yarn.surfaces["weft_1_contact"].reshape(8, 6, 4)
+    mesh.surfaces["weft_1_contact"] = bottom[3:5, 2:4].reshape(-1, 4)
+    outside = np.ones((8, 6), dtype=bool)
+    outside[3:5, 2:4] = False
+    mesh.surfaces["weft_1_free"] = np.vstack([yarn.surfaces["weft_1_free"], bottom[outside]])
+    for rings, faces in ((0, 2 * 2), (1, 4 * 4), (2, 6 * 6), (9, 8 * 6)):
+        found = touching_faces(mesh, rings)
+        assert len(found["weft_bottom"][0]) == faces
+        assert len(found["weft_top"][0]) == len(found["warp_top"][0]) == 0

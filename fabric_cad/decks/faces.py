@@ -10,6 +10,8 @@ from ..weaves import DIRECTIONS
 # corners of the faces S1 ... S6 of C3D8
 FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])
 
+_UPRIGHT = 0.1  # sine up to which a face is one of the yarn's sides, neither top nor bottom
+
 
 def element_faces(mesh: Mesh) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """For every surface, the elements (quads,) it bounds and which of their faces (0: S1 ... 5: S6).
@@ -56,30 +58,31 @@ def touching_faces(mesh: Mesh, rings: int = 0) -> dict[str, tuple[np.ndarray, np
     for yarn in mesh.yarns:
         direction = yarn.split("_")[0]
         touching, free = faces[f"{yarn}_contact"], faces.get(f"{yarn}_free")
-        _, up = _quads(mesh, touching)
-        for side, chosen in (("top", up), ("bottom", ~up)):
+        _, upward = _quads(mesh, touching)
+        for side, chosen in (("top", upward > 0), ("bottom", upward <= 0)):
             taken = touching[0][chosen], touching[1][chosen]
             if rings and free is not None:
                 taken = _widened(mesh, taken, free, side == "top", rings)
             found[f"{direction}_{side}"].append(taken)
-    return {name: tuple(map(np.concatenate, zip(*parts))) for name, parts in found.items()}
+    none = np.empty(0, dtype=np.int64)
+    return {name: tuple(map(np.concatenate, zip((none, none), *parts))) for name, parts in found.items()}
 
 
 def _quads(mesh: Mesh, faces: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Corner nodes (quads, 4) of element faces and whether they look up."""
+    """Corner nodes (quads, 4) of element faces and how far they look up: the sine of their normal's rise."""
     elements, sides = faces
     quads = mesh.hexahedra[elements[:, None], FACES[sides]]
     outward = mesh.points[quads].mean(axis=1) - mesh.points[mesh.hexahedra[elements]].mean(axis=1)
     corners = mesh.points[quads]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     normal *= np.sign((normal * outward).sum(axis=1))[:, None]
-    return quads, normal[:, 2] > 0
+    return quads, normal[:, 2] / np.linalg.norm(normal, axis=1)
 
 
 def _widened(mesh: Mesh, touching, free, top: bool, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """Faces and the free ones of their side that share a node with them, and so on, ring by ring."""
-    quads, up = _quads(mesh, free)
-    candidates = up == top
+    quads, upward = _quads(mesh, free)
+    candidates = (upward if top else -upward) > _UPRIGHT
     reached = np.zeros(len(mesh.points), dtype=bool)
     reached[mesh.hexahedra[touching[0][:, None], FACES[touching[1]]]] = True
     chosen = np.zeros(len(quads), dtype=bool)

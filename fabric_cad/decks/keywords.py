@@ -259,7 +259,7 @@ class Boundary(Keyword):
 
 @dataclass(frozen=True)
 class Output(Keyword):
-    """Results to write at the end of a step: fields, contact, per set of ``force_sets`` the sum of its nodes' forces."""
+    """Results to write at a step's end: fields, contact, and per set of ``force_sets`` the sum of its nodes' forces."""
 
     force_sets: tuple[str, ...]
     contact: bool = True

@@ -79,14 +79,15 @@ def model_keywords(
     yield Comment(f"{title}\nmm, N, MPa; axis 1 of a yarn is its fibres'")
     yield from cell_keywords(mesh, touch.rings)
     yield from _material(mesh, law, hardening)
-    yield from _contact(mesh, touch)
+    pairs = _touching_pairs(mesh)
+    yield from _contact(pairs, touch)
     reference = {name: len(mesh.points) + 1 + at for at, name in enumerate(DIRECTIONS)}
     yield Nodes("cell_vectors", np.diag([*period, 0.0])[:2], first=reference["weft"])
     yield from periodic_equations(mesh, period, reference)
     for name in DIRECTIONS:
         yield NodeSet(f"{name}_ends", tuple(f"{yarn}_end" for yarn in mesh.yarns if yarn.startswith(name)))
     yield Boundary(fixings(mesh))
-    output = Output(tuple(f"{name}_ends" for name in DIRECTIONS), contact=touch.kind == "penalty")
+    output = Output(tuple(f"{name}_ends" for name in DIRECTIONS), contact=bool(pairs) and touch.kind == "penalty")
     for load in loads:
         moved = [(name, getattr(load, name)) for name in DIRECTIONS]
         driven = [(reference[name], axis, value) for name, change in moved for axis, value in enumerate(change, 1)]
@@ -104,9 +105,13 @@ def _material(mesh: Mesh, law: EngineeringConstants, hardening: float) -> Iterat
         yield SolidSection("compaction", "yarn_compaction")
 
 
-def _contact(mesh: Mesh, touch: Touch) -> Iterator[Keyword]:
+def _touching_pairs(mesh: Mesh) -> list[tuple[str, str]]:
+    """Slave and master surface of every contact there is."""
     present = {name for name, (elements, _) in touching_faces(mesh).items() if len(elements)}
-    pairs = [pair for pair in _PAIRS if present.issuperset(pair)]
+    return [pair for pair in _PAIRS if present.issuperset(pair)]
+
+
+def _contact(pairs: list[tuple[str, str]], touch: Touch) -> Iterator[Keyword]:
     if touch.kind == "tie":
         yield from (Tie(f"{slave}_on_{master}", slave, master, 1e-3) for slave, master in pairs)
     elif pairs:
