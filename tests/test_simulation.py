@@ -294,7 +294,7 @@ def test_the_commands_leave_their_files(tmp_path, capsys):
     last = {key: float(value) for key, value in rows[-1].items()}
     assert last["T11_N_per_mm"] == pytest.approx(2 * last["T11_N_per_yarn"] / (2 / 0.22))
     assert last["T11_N_per_yarn"] > float(rows[2]["T11_N_per_yarn"]) > 0
-    assert report["valid_up_to_deg"] == 2 and not report["penetration_exceeded"]
+    assert report["valid_up_to_deg"] == 2 and not report["contact"]["states_beyond"]
 
 
 def test_what_a_stopped_solver_reached_is_kept_aside(tmp_path, capsys):

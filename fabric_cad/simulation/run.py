@@ -9,7 +9,7 @@ import csv
 import json
 import math
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -52,6 +52,12 @@ class Case:
     settings: Settings
     folder: Path
     stages: Stages
+
+    @property
+    def penetration_bound(self) -> float:
+        """Penetration (mm) of yarns up to which a state is called valid."""
+        thickness = min(each.thickness for each in self.cell.fabric.directions.values())
+        return self.settings.contact.valid_penetration * thickness
 
     def path(self, ending: str) -> Path:
         """A file of this case, e.g. ``tension.csv`` or ``tension_curves.png``."""
@@ -187,23 +193,17 @@ def _decks(case: Case, dialect: str) -> list[tuple[Path, tuple[Load, ...]]]:
 def _tension(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
     """Table, report and pictures of a tension case."""
     mesh, period, tension = case.cell.mesh, case.cell.fabric.period, case.settings.tension
-    states = [
-        state for path, job in zip(paths(tension, case.settings.contact), jobs) for state in path[: len(job.reached)]
-    ]
+    computed = zip(paths(tension, case.settings.contact), jobs)
+    states = [(0.0, 0.0), *(state for path, job in computed for state in path[: len(job.reached)])]
     reached = [at_rest(mesh), *(each for job in jobs for each in job.reached)]
-    states.insert(0, (0.0, 0.0))
-    with case.stages("penetration"):
-        conditions = [
-            condition(mesh, case.settings.yarn, each, (1 + np.array(state))[:, None] * cell_vectors(period, 0.0))
-            for state, each in zip(states, reached)
-        ]
+    vectors = [(1 + np.array(state))[:, None] * cell_vectors(period, 0.0) for state in states]
+    conditions = _conditions(case, reached, vectors)
     rows = [tension_row(mesh, period, *of) for of in zip(states, reached, conditions)]
-    rows = by_curve(rows, tension)
-    if len(reached) > 1:
+    if drawn := _valid(case, zip(states[1:], reached[1:]), conditions[1:]):
         with case.stages("pictures"):
-            _draw_tension(case, rows)
-            # the state of largest equal strains, as far as the solver came
-            _draw_cell(case, max(zip(states, reached), key=lambda of: (min(of[0]), max(of[0])))[1])
+            _draw_tension(case, by_curve(rows, tension))
+            _draw_cell(case, max(drawn, key=lambda of: (min(of[0]), max(of[0])))[1])
+    rows = by_curve(rows, tension)
     ends = {row["k"]: row for row in rows if not math.isnan(row["k"])}  # the last state of every curve
     return rows, {"largest": [_plain(row) for row in ends.values()]}
 
@@ -220,32 +220,34 @@ def _draw_tension(case: Case, rows: list[dict]) -> None:
 
 def _shear(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
     """Table, report and pictures of a shear case."""
-    mesh, fabric, shear = case.cell.mesh, case.cell.fabric, case.settings.shear
-    states = list(angles(shear)[: len(jobs[0].reached)])
-    reached = list(jobs[0].reached)
+    mesh, period, shear = case.cell.mesh, case.cell.fabric.period, case.settings.shear
+    states, reached = list(angles(shear)[: len(jobs[0].reached)]), list(jobs[0].reached)
     if not shear.strain:
         states, reached = [0.0, *states], [at_rest(mesh), *reached]
-    with case.stages("penetration"):
-        conditions = [
-            condition(mesh, case.settings.yarn, each, cell_vectors(fabric.period, angle, shear.strain))
-            for angle, each in zip(states, reached)
-        ]
-    rows = [shear_row(mesh, fabric.period, angle, shear.strain, *of) for angle, *of in zip(states, reached, conditions)]
-    depths = [row["penetration_mm"] for row in rows]
-    bound = shear.valid_penetration * min(each.thickness for each in fabric.directions.values())
+    conditions = _conditions(case, reached, [cell_vectors(period, angle, shear.strain) for angle in states])
+    rows = [shear_row(mesh, period, angle, shear.strain, *of) for angle, *of in zip(states, reached, conditions)]
     if len(rows) > 1:
         with case.stages("pictures"):
             from ..plots import plot_shear_curve
 
             columns = {name: [row[name] for row in rows] for name in rows[0]}
-            plot_shear_curve(columns, allowed=bound).savefig(case.path("_curve.png"), dpi=150)
-            _draw_cell(case, reached[-1])
+            plot_shear_curve(columns, allowed=case.penetration_bound).savefig(case.path("_curve.png"), dpi=150)
+            _draw_cell(case, _valid(case, reached, conditions)[-1])
+    depths = [row["penetration_mm"] for row in rows]
     return rows, {
-        "valid_up_to_deg": valid_until(states, depths, bound) if states else 0.0,
-        "valid_penetration_mm": bound,
-        "penetration_exceeded": any(depth > bound for depth in depths),
+        "valid_up_to_deg": valid_until(states, depths, case.penetration_bound) if states else 0.0,
         "largest": _plain(rows[-1]) if rows else None,
     }
+
+
+def _conditions(case: Case, reached: list[Reached], vectors: list[np.ndarray]) -> list[dict[str, float]]:
+    with case.stages("penetration"):
+        return [condition(case.cell.mesh, case.settings.yarn, *of) for of in zip(reached, vectors)]
+
+
+def _valid(case: Case, states: Iterable, conditions: list[dict[str, float]]) -> list:
+    """The states whose yarns keep out of each other."""
+    return [state for state, at in zip(states, conditions) if at["penetration_mm"] <= case.penetration_bound]
 
 
 def _draw_cell(case: Case, state: Reached) -> None:
@@ -318,6 +320,8 @@ def _report(case: Case, name: str, jobs: list[Job], rows: list[dict], found: dic
         "contact": {
             "max_contact_penetration_mm": _extreme(max, [each.overclosure for each in reached]),
             "max_penetration_mm": _extreme(max, [row["penetration_mm"] for row in rows]),
+            "valid_penetration_mm": case.penetration_bound,
+            "states_beyond": sum(row["penetration_mm"] > case.penetration_bound for row in rows),
             "min_contact_share": _extreme(min, [each.share for each in reached]),
             "least_volume_ratio": _extreme(min, [row["least_volume_ratio"] for row in rows]),
         },

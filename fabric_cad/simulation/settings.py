@@ -59,12 +59,16 @@ class YarnLaw:
 
 @dataclass(frozen=True)
 class ContactLaw:
-    """How yarns touch: ``penalty`` with a stiffness (N/mm3) and friction, or ``tie``."""
+    """How yarns touch: ``penalty`` with a stiffness (N/mm3) and friction, or ``tie``.
+
+    ``valid_penetration`` is the share of the thinner yarn's thickness up to which a state is called valid.
+    """
 
     kind: str
     stiffness_N_per_mm3: float
     friction: float
     stick_N_per_mm3: float
+    valid_penetration: float
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,6 @@ class ShearCase:
     points: int
     strain: float
     rings: int
-    valid_penetration: float
 
 
 @dataclass(frozen=True)
@@ -132,6 +135,7 @@ _CHECKS: dict[str, dict[str, Check]] = {
         "stiffness_N_per_mm3": _POSITIVE,
         "friction": (float, lambda v: 0 <= v <= 2, "is not between 0 and 2"),
         "stick_N_per_mm3": _POSITIVE,
+        "valid_penetration": (float, lambda v: 0 < v <= 0.5, "is not above 0 and up to 0.5"),
     },
     "mesh": {"across": _count(2, 200), "crossing": _count(2, 200), "through": _count(0, 100), "gap": _count(2, 200)},
     "tension": {
@@ -145,7 +149,6 @@ _CHECKS: dict[str, dict[str, Check]] = {
         "points": _count(1, 200),
         "strain": (float, lambda v: 0 <= v <= 0.1, "is not from 0 to 0.1"),
         "rings": _count(0, 20),
-        "valid_penetration": (float, lambda v: 0 < v <= 0.5, "is not above 0 and up to 0.5"),
     },
 }
 

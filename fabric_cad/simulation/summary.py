@@ -15,10 +15,15 @@ def summary(report: Mapping) -> str:
     ]
     lines += _tension(report["largest"]) if report["case"] == "tension" else _shear(report)
     if contact["max_contact_penetration_mm"] is not None:
+        lines += [
+            f"  penetration     at most {contact['max_contact_penetration_mm']:.2e} mm between the contact surfaces, "
+            f"{contact['max_penetration_mm']:.2e} mm anywhere",
+            f"  contact         at least {100 * contact['min_contact_share']:.0f} % of the patches under pressure",
+        ]
+    if contact["states_beyond"]:
         lines.append(
-            f"  contact         penetration at most {contact['max_contact_penetration_mm']:.2e} mm between patches, "
-            f"{contact['max_penetration_mm']:.2e} mm anywhere; at least {100 * contact['min_contact_share']:.0f} % "
-            "of the patches touch"
+            f"  NOT VALID       {contact['states_beyond']} states: their yarns penetrate by more than "
+            f"{contact['valid_penetration_mm']:.2g} mm"
         )
     lines.append(f"  seconds         {sum(report['seconds'].values()):.1f}")
     return "\n".join(lines)
@@ -41,9 +46,9 @@ def _shear(report: Mapping) -> list[str]:
         f"  at {last['angle_deg']:g} degrees   moment {last['moment_N_mm']:.4g} N mm a cell, "
         f"force {last['force_N_per_mm']:.4g} N/mm"
     ]
-    until = "up to" if report["penetration_exceeded"] else "at least up to"
+    until = "up to" if report["contact"]["states_beyond"] else "at least up to"
     lines.append(
         f"  contact valid   {until} {report['valid_up_to_deg']:.3g} degrees "
-        f"(penetration within {report['valid_penetration_mm']:.2g} mm)"
+        f"(penetration within {report['contact']['valid_penetration_mm']:.2g} mm)"
     )
     return lines
