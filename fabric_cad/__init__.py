@@ -31,10 +31,14 @@ _FROM = {
     "Mesh": "meshing",
     "MeshOptions": "meshing",
     "make_cell": "pipeline",
+    "make_tension": "simulation.run",
+    "make_shear": "simulation.run",
+    "Solver": "simulation.job",
     "FabricCadError": "errors",
     "InputError": "errors",
     "BuildError": "errors",
     "OutputError": "errors",
+    "SolverError": "errors",
 }
 __all__ = ["__version__", *_FROM]
 

@@ -104,7 +104,9 @@ def _parser() -> argparse.ArgumentParser:
     wif = command("wif", _wif, "print a weaving draft (.wif) as a row to paste into pattern.csv")
     wif.add_argument("draft", metavar="DRAFT.wif", help="a draft with a tie-up and treadling, or a liftplan")
     wif.add_argument("--name", required=True, metavar="NAME", help="name of the row")
-    command("init", _init, "put the shipped family tables into ./families (files that exist are kept)")
+    command(
+        "init", _init, "put the shipped family tables and simulation.toml into ./families (files that exist are kept)"
+    )
     return parser
 
 
@@ -345,7 +347,7 @@ def _shear(settings) -> int:
 def _simulate(settings, kind: str, make) -> int:
     """Run a case, or write its deck alone."""
     from .pipeline import Stages, find_row
-    from .simulation.job import Solver
+    from .simulation.job import Solver, cores
     from .simulation.run import write_case
     from .simulation.solver import find_solver
     from .simulation.summary import summary
@@ -362,8 +364,7 @@ def _simulate(settings, kind: str, make) -> int:
             if not settings.quiet:
                 print(f"  {deck}")
         return 0
-    threads = settings.threads or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    solver = Solver(find_solver(settings.ccx), threads, settings.time_limit, progress.solver)
+    solver = Solver(find_solver(settings.ccx), settings.threads or cores(), settings.time_limit, progress.solver)
     report = make(row, settings.families, settings.out, solver, **options)
     if not settings.quiet:
         print(summary(report))
@@ -405,7 +406,7 @@ def _init(settings) -> int:
     target = Path("families")
     try:
         target.mkdir(exist_ok=True)
-        for table in sorted(shipped_families().glob("*.csv")):
+        for table in sorted(file for file in shipped_families().iterdir() if file.suffix in (".csv", ".toml")):
             place = target / table.name
             if place.exists():
                 message = f"{place}: kept, it is there already"

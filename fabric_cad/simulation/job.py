@@ -5,8 +5,9 @@ mesh, loads --model--> <stem>.inp --ccx--> <stem>.frd, .dat, .log --readers--> J
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -20,18 +21,26 @@ from .energy import cell_energy
 from .penetration import penetration
 from .results import State, read_dat, read_frd
 from .settings import Settings, YarnLaw
-from .solver import Progress, Run, run_solver
+from .solver import Progress, Run, find_solver, run_solver
 
 _STRESS_FREE = 1e-6  # MPa: contact pressure above which a node counts as touching
 
 
+def cores() -> int:
+    """Processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 @dataclass(frozen=True)
 class Solver:
-    """Which ccx to run, on how many threads, for how many seconds a job, and who hears of its progress."""
+    """Which ccx to run, on how many threads, for how many seconds a job, and who hears of its progress.
 
-    path: Path
-    threads: int
-    time_limit: float
+    By default the one on the PATH, on all processors. Raises :class:`SolverError` where there is none.
+    """
+
+    path: Path = field(default_factory=find_solver)
+    threads: int = field(default_factory=cores)
+    time_limit: float = 3600.0
     listen: Callable[[Progress], None] | None = None
 
 

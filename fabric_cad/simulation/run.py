@@ -64,17 +64,18 @@ class Case:
         return self.folder / f"{self.kind}{ending}"
 
 
-def make_tension(row: Family, families: str | Path, out: str | Path, solver: Solver, **options) -> dict:
+def make_tension(row: Family, families: str | Path, out: str | Path, solver: Solver | None = None, **options) -> dict:
     """Biaxial tension of one row's cell: every file of it in ``out/<row name>``; its report.
 
-    ``options``: ``mesh``, keywords of :func:`fabric_cad.mesh_options` that win over the settings',
-    and ``stages``. Raises :class:`FabricCadError`; where the solver stopped early what it reached is
-    in ``out/<row name>/tension_incomplete``, earlier results are as they were.
+    ``families`` is the folder whose ``simulation.toml`` holds, where it has one. ``options``:
+    ``mesh``, keywords of :func:`fabric_cad.mesh_options` that win over the settings', and
+    ``stages``. Raises :class:`FabricCadError`; where the solver stopped early, what it reached is
+    in ``out/<row name>/tension_incomplete``, and earlier results are as they were.
     """
     return _make("tension", _tension, row, families, out, solver, **options)
 
 
-def make_shear(row: Family, families: str | Path, out: str | Path, solver: Solver, **options) -> dict:
+def make_shear(row: Family, families: str | Path, out: str | Path, solver: Solver | None = None, **options) -> dict:
     """Trellis shear of one row's cell; as :func:`make_tension`."""
     return _make("shear", _shear, row, families, out, solver, **options)
 
@@ -93,10 +94,10 @@ def _make(
     row: Family,
     families: str | Path,
     out: str | Path,
-    solver: Solver,
+    solver: Solver | None,
     **options,
 ) -> dict:
-    name = row.names[0]
+    name, solver = row.names[0], solver or Solver()
     with staged(Path(out) / name) as folder:
         case = _prepared(kind, row, families, folder, **options)
         jobs = []
