@@ -348,9 +348,9 @@ def _simulate(settings, kind: str, make) -> int:
     """Run a case, or write its deck alone."""
     from .pipeline import Stages, find_row
     from .simulation.job import Solver, cores
+    from .simulation.report import summary
     from .simulation.run import write_case
     from .simulation.solver import find_solver
-    from .simulation.summary import summary
 
     row, others = find_row(settings.families, settings.row)
     if not settings.quiet:

@@ -5,63 +5,29 @@ row -> solved fabric -> STEP -> coarse hexahedra -> deck -> ccx -> table, pictur
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import shutil
 from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..decks.model import Load
-from ..errors import BuildError, SolverError
+from ..errors import SolverError
 from ..meshing.mesh import Mesh
 from ..pipeline import Stages
-from ..solved import SolvedFabric
 from ..staging import staged
 from ..tables import Family
+from .cell import loaded_cell
 from .job import Job, Reached, Solver, at_rest, condition, run_job, transverse_strains, write_model
 from .penetration import valid_until
-from .settings import Settings, read_settings
+from .report import Case, case_report, plain, write_rows
+from .settings import read_settings
 from .shear import angles, cell_vectors, shear_loads, shear_row
 from .tension import by_curve, paths, tension_loads, tension_row
 
 INCOMPLETE = "incomplete"
-
-
-@dataclass(frozen=True, eq=False)
-class Cell:
-    """The cell that is loaded: its fabric, its mesh, and what was measured on the mesh."""
-
-    fabric: SolvedFabric
-    mesh: Mesh
-    quality: dict[str, float]
-
-
-@dataclass(frozen=True, eq=False)
-class Case:
-    """What tension and shear have in common: the row, its settings and cell, and how decks are run.
-
-    ``kind`` is ``tension`` or ``shear``, the stem of every file; ``folder`` takes them.
-    """
-
-    kind: str
-    cell: Cell
-    settings: Settings
-    folder: Path
-    stages: Stages
-
-    @property
-    def penetration_bound(self) -> float:
-        """Penetration (mm) of yarns up to which a state is called valid."""
-        thickness = min(each.thickness for each in self.cell.fabric.directions.values())
-        return self.settings.contact.valid_penetration * thickness
-
-    def path(self, ending: str) -> Path:
-        """A file of this case, e.g. ``tension.csv`` or ``tension_curves.png``."""
-        return self.folder / f"{self.kind}{ending}"
 
 
 def make_tension(row: Family, families: str | Path, out: str | Path, solver: Solver | None = None, **options) -> dict:
@@ -107,8 +73,8 @@ def _make(
             if not jobs[-1].run.finished:
                 break
         rows, found = work(case, jobs)
-        report = _report(case, name, jobs, rows, found)
-        _write_table(case.path(".csv"), rows)
+        report = case_report(case, name, jobs, rows, found)
+        write_rows(case.path(".csv"), rows)
         case.path(".json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
         if not jobs[-1].run.finished:
             target = Path(out) / name / f"{kind}_{INCOMPLETE}"
@@ -129,48 +95,7 @@ def _prepared(
 ) -> Case:
     """The row's settings and its cell, meshed."""
     settings, stages = read_settings(families, row.names[0]), stages or Stages()
-    return Case(kind, _cell(row, settings, mesh or {}, folder, stages), settings, folder, stages)
-
-
-def _cell(row: Family, settings: Settings, options: dict[str, int | float], folder: Path, stages: Stages) -> Cell:
-    """The row's cell, meshed as its settings ask for. Raises :class:`BuildError` where the mesh is unsound."""
-    from ..identification import identify
-    from ..meshing.options import mesh_options
-    from ..report import contact_pairing, end_pairing
-
-    with stages("identify"):
-        fabric = identify(row)[row.names[0]]
-    asked = options if "size" in options else {k: v for k, v in asdict(settings.mesh).items() if v} | options
-    chosen = mesh_options(fabric, **asked)
-    with stages("solids"):
-        from ..masters import build_cell
-
-        solids = build_cell(fabric)
-    step, msh = folder / "cell.step", folder / "cell.msh"
-    with stages("write STEP"):
-        solids.write_step(step)
-    with stages("mesh"):
-        from ..meshing.mesher import mesh_cell, read_mesh
-
-        mesh_cell(step, fabric, chosen, msh)
-        mesh = read_mesh(msh)
-    step.unlink()
-    msh.unlink()
-    with stages("quality"):
-        from ..views import scaled_jacobians
-
-        worst = float(scaled_jacobians(mesh).min())
-        contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.period)
-    if not worst > 0 or contact.nodes != contact.paired or ends.nodes != ends.paired:
-        raise BuildError(f"{fabric.name}: the mesh has elements turned inside out or nodes without their partner")
-    quality = {
-        "nodes": len(mesh.points),
-        "hexahedra": len(mesh.hexahedra),
-        "min_scaled_jacobian": worst,
-        "contact_nodes": contact.nodes,
-        "coincident_contact_nodes": contact.paired,
-    }
-    return Cell(fabric, mesh, quality)
+    return Case(kind, loaded_cell(row, settings, mesh or {}, folder, stages), settings, folder, stages)
 
 
 def _decks(case: Case, dialect: str) -> list[tuple[Path, tuple[Load, ...]]]:
@@ -206,7 +131,7 @@ def _tension(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
             _draw_cell(case, max(drawn, key=lambda of: (min(of[0]), max(of[0])))[1])
     rows = by_curve(rows, tension)
     ends = {row["k"]: row for row in rows if not math.isnan(row["k"])}  # the last state of every curve
-    return rows, {"largest": [_plain(row) for row in ends.values()]}
+    return rows, {"largest": [plain(row) for row in ends.values()]}
 
 
 def _draw_tension(case: Case, rows: list[dict]) -> None:
@@ -237,7 +162,7 @@ def _shear(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
     depths = [row["penetration_mm"] for row in rows]
     return rows, {
         "valid_up_to_deg": valid_until(states, depths, case.penetration_bound) if states else 0.0,
-        "largest": _plain(rows[-1]) if rows else None,
+        "largest": plain(rows[-1]) if rows else None,
     }
 
 
@@ -289,67 +214,3 @@ def _magnified(mesh: Mesh, state: Reached) -> float:
         return 1.0
     power = 10.0 ** math.floor(math.log10(wanted))
     return max(step * power for step in (1, 2, 5) if step * power <= wanted)
-
-
-def _plain(row: dict[str, float]) -> dict:
-    """A row for JSON, which knows neither infinity nor NaN."""
-    return {key: None if math.isnan(value) else _finite(float(value)) for key, value in row.items()}
-
-
-def _report(case: Case, name: str, jobs: list[Job], rows: list[dict], found: dict) -> dict:
-    """The content of ``tension.json`` or ``shear.json``."""
-    reached = [each for job in jobs for each in job.reached]
-    settings = asdict(case.settings)
-    settings["yarn"]["compaction_strain"] = _finite(settings["yarn"]["compaction_strain"])
-    settings["tension"]["ratios"] = [_finite(ratio) for ratio in settings["tension"]["ratios"]]
-    return {
-        "row": name,
-        "case": case.kind,
-        "settings": {key: settings[key] for key in ("yarn", "contact", case.kind)},
-        "mesh": case.cell.quality,
-        "solver": {
-            "version": jobs[0].run.version,
-            "finished": jobs[-1].run.finished,
-            "reason": jobs[-1].run.reason,
-            "jobs": len(jobs),
-            "states": len(reached),
-            "cutbacks": sum(job.run.cutbacks for job in jobs),
-            "seconds": round(sum(job.run.seconds for job in jobs), 3),
-            "peak_memory_MB": round(max(job.run.peak_memory for job in jobs) / 1e6, 1),
-            "warnings": sorted({warning for job in jobs for warning in job.run.warnings}),
-        },
-        "contact": {
-            "max_contact_penetration_mm": _extreme(max, [each.overclosure for each in reached]),
-            "max_penetration_mm": _extreme(max, [row["penetration_mm"] for row in rows]),
-            "valid_penetration_mm": case.penetration_bound,
-            "states_beyond": sum(row["penetration_mm"] > case.penetration_bound for row in rows),
-            "min_contact_share": _extreme(min, [each.share for each in reached]),
-            "least_volume_ratio": _extreme(min, [row["least_volume_ratio"] for row in rows]),
-        },
-        **found,
-        "files": sorted([*(file.name for file in case.folder.iterdir()), f"{case.kind}.csv", f"{case.kind}.json"]),
-        "seconds": {key: round(value, 4) for key, value in case.stages.seconds.items()},
-    }
-
-
-def _finite(value: float) -> float | str:
-    """Infinity as text, for JSON has none."""
-    return "inf" if math.isinf(value) else value
-
-
-def _extreme(choose: Callable, values: list[float]) -> float | None:
-    known = [value for value in values if not math.isnan(value)]
-    return choose(known) if known else None
-
-
-def _write_table(path: Path, rows: list[dict]) -> None:
-    """Rows as CSV; an empty cell where there is no number."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        if rows:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(rows[0])
-            writer.writerows([[_cell_text(value) for value in row.values()] for row in rows])
-
-
-def _cell_text(value: float) -> str:
-    return "" if math.isnan(value) else f"{value:.9g}"
