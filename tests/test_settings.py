@@ -58,7 +58,7 @@ def test_what_is_wrong_is_named_with_its_place(tmp_path, text, said):
 
 def test_all_that_is_wrong_is_told_at_once(tmp_path):
     with pytest.raises(InputError) as error:
-        read(tmp_path, "[yarn]\nE1_MPa = 0\nE2_MPa = 'soft'\n[shear]\nrings = -1\n")
+        read(tmp_path, "[yarn]\nE1_MPa = 0\nE2_MPa = 'soft'\n[contact]\nrings = -1\n")
     assert len(error.value.problems) == 3
 
 

@@ -54,12 +54,14 @@ def meshed(folder, **options):
     return read_mesh(folder / "plain42.msh")
 
 
-def run(folder, mesh, loads, settings=None, rings=0, name="job"):
+def run(folder, mesh, loads, settings=None, name="job", at_once=False):
     """A job whose loads are all reached, without a warning of the solver's."""
     deck = folder / f"{name}.inp"
-    write_model(deck, mesh, PERIOD, settings or read_settings(FAMILIES, "plain42"), loads, rings, name)
+    write_model(deck, mesh, PERIOD, settings or read_settings(FAMILIES, "plain42"), loads, name)
     asked = "*CONTACT PRINT, TOTALS=ONLY, FREQUENCY=9999\nCELS\n*END STEP" * ("CONTACT PAIR" in deck.read_text())
     deck.write_text(deck.read_text().replace("*END STEP", asked or "*END STEP"))
+    if at_once:
+        deck.write_text(deck.read_text().replace("*STATIC\n0.95,", "*STATIC\n1.,"))
     job = run_job(deck, mesh, loads, solver())
     assert job.run.finished, job.run.reason
     assert job.run.warnings == ()
@@ -82,7 +84,7 @@ def mesh(folder):
 @pytest.fixture(scope="module")
 def reached(folder, mesh):
     """States of PLAIN42 by (E11, E22) in thousandths: k = 1 upwards, then k = 0 downwards."""
-    states = [(1, 1), (2, 2), (3, 3), (4, 4), (4, 2), (4, 0), (3, 0), (2, 0), (1, 0)]
+    states = [(1, 1), (2, 2), (3, 3), (4, 0), (4, 4), (4, 2), (3, 0), (2, 0), (1, 0)]
     loads = tension_loads(PERIOD, tuple((weft / 1000, warp / 1000) for weft, warp in states))
     return dict(zip(states, run(folder, mesh, loads, name="tension")))
 
@@ -99,7 +101,7 @@ def test_the_plain_weave_has_its_known_tension(reached, state, tension):
 
 
 def test_equal_strains_of_a_balanced_weave_give_equal_tensions(reached):
-    for state in ((1, 1), (2, 2), (3, 3), (4, 4)):
+    for state in ((1, 1), (2, 2), (3, 3), (4, 4)):  # some reached from equal strains, one by a jump
         weft, warp = tensions(reached[state])
         assert warp == pytest.approx(weft, rel=1e-3)
 
@@ -140,7 +142,7 @@ def test_the_work_of_the_forces_is_the_energy_stored(folder, reached, mesh):
     work = simpson(pulls, dx=0.001 * PERIOD[0])
     state = path[-1]
     stored = cell_energy(mesh, state.displacement, settings.yarn).strain
-    stored += contact_energy(folder, "tension", 4)
+    stored += contact_energy(folder, "tension", 5)
     assert work == pytest.approx(stored, rel=2e-3)
 
 
@@ -158,7 +160,8 @@ def test_tension_converges_with_the_mesh(folder, mesh, reached):
 def test_a_turned_cell_has_no_stress(folder, mesh):
     turn = np.radians(10)
     across, along = np.sin(turn) * PERIOD[0], (np.cos(turn) - 1) * PERIOD[0]
-    (state,) = run(folder, mesh, (Load("turn", (along, across, 0.0), (-across, along, 0.0)),), name="turn")
+    loads = (Load("turn", (along, across, 0.0), (-across, along, 0.0)),)
+    (state,) = run(folder, mesh, loads, name="turn", at_once=True)  # half of the turn would be no turn
     assert np.abs(state.forces).max() < 1e-4
     law = read_settings(FAMILIES, "plain42").yarn
     assert cell_energy(mesh, state.displacement, law).strain < 1e-5  # the file gives six digits of the displacement
@@ -169,7 +172,7 @@ def test_the_work_of_shear_is_the_energy_stored(folder, mesh):
     text = "[shear]\nangle_deg = 4.0\npoints = 4\n"
     (folder / "simulation.toml").write_text(text)
     settings = read_settings(folder, "plain42")
-    states = run(folder, mesh, shear_loads(PERIOD, settings.shear), rings=2, name="shear")
+    states = run(folder, mesh, shear_loads(PERIOD, settings.shear), settings, name="shear")
     couples = [0.0] + [moment(PERIOD, angle, 0.0, state.forces) for angle, state in zip((1, 2, 3, 4), states)]
     assert (np.diff(couples) > 0).all()
     stored = cell_energy(mesh, states[-1].displacement, settings.yarn).strain

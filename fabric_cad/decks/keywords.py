@@ -282,12 +282,14 @@ class Output(Keyword):
 class StaticStep(Keyword):
     """``*STEP, NLGEOM`` with ``*STATIC``: ``content`` applied over a time of 1, ``first`` of it at once.
 
-    The solver halves an increment that does not converge, down to ``smallest``; at most ``increments``.
+    CalculiX settles which points touch early in an increment; the short second one settles it anew, near the
+    end, so that the state hardly depends on the one before. An increment that does not converge is cut
+    down to ``smallest``; at most ``increments``.
     """
 
     title: str
     content: tuple[Keyword, ...]
-    first: float = 1.0
+    first: float = 0.95
     smallest: float = 1e-3
     increments: int = 200
 

@@ -85,7 +85,6 @@ def write_model(
     period: tuple[float, float],
     settings: Settings,
     loads: tuple[Load, ...],
-    rings: int,
     title: str,
     dialect: str = "calculix",
 ) -> None:
@@ -94,6 +93,7 @@ def write_model(
     constants = EngineeringConstants(
         *(law.E1_MPa, law.E2_MPa, law.E3_MPa, law.nu12, law.nu13, law.nu23, law.G12_MPa, law.G13_MPa, law.G23_MPa)
     )
+    rings = 0 if contact.kind == "tie" else contact.rings
     touch = Touch(contact.kind, contact.stiffness_N_per_mm3, contact.friction, contact.stick_N_per_mm3, rings)
     write_keywords(model_keywords(mesh, period, constants, law.hardening, touch, loads, title), path, dialect)
 
@@ -134,7 +134,7 @@ def _reached(mesh: Mesh, load: Load, state: State, forces: np.ndarray, weights: 
         touching = weights > 0
         pressure[touching] = contact[:count, columns.index("CPRESS")][touching]
         overclosure = max(0.0, float(-np.nanmin(opening)))
-        share = float(weights[np.nan_to_num(pressure) > _STRESS_FREE].sum() / weights.sum())
+        share = 1 - float(weights[~(pressure > _STRESS_FREE)].sum() / weights.sum())
     displacement, strain = state.fields["DISP"][:count], state.fields["TOSTRAIN"][:count]
     return Reached(load, forces, displacement, strain, pressure, overclosure, share)
 

@@ -103,15 +103,14 @@ def _decks(case: Case, dialect: str) -> list[tuple[Path, tuple[Load, ...]]]:
     cell, settings, period = case.cell, case.settings, case.cell.fabric.period
     if case.kind == "tension":
         runs = [tension_loads(period, path) for path in paths(settings.tension, settings.contact)]
-        rings = 0
     else:
-        runs, rings = [shear_loads(period, settings.shear)], settings.shear.rings
+        runs = [shear_loads(period, settings.shear)]
     decks = []
     with case.stages("write deck"):
         for at, loads in enumerate(runs, 1):
             deck = case.path(f"_{at}.inp" if len(runs) > 1 else ".inp")
             title = f"{case.kind} of the elementary cell of {cell.fabric.name}"
-            write_model(deck, cell.mesh, period, settings, loads, rings, title, dialect)
+            write_model(deck, cell.mesh, period, settings, loads, title, dialect)
             decks.append((deck, loads))
     return decks
 

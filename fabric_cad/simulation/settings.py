@@ -61,13 +61,15 @@ class YarnLaw:
 class ContactLaw:
     """How yarns touch: ``penalty`` with a stiffness (N/mm3) and friction, or ``tie``.
 
-    ``valid_penetration`` is the share of the thinner yarn's thickness up to which a state is called valid.
+    ``rings`` of faces widen the patches that touch at first, but where they are glued;
+    ``valid_penetration`` is the share of the thinner yarn's thickness up to which a state is valid.
     """
 
     kind: str
     stiffness_N_per_mm3: float
     friction: float
     stick_N_per_mm3: float
+    rings: int
     valid_penetration: float
 
 
@@ -98,7 +100,6 @@ class ShearCase:
     angle_deg: float
     points: int
     strain: float
-    rings: int
 
 
 @dataclass(frozen=True)
@@ -135,6 +136,7 @@ _CHECKS: dict[str, dict[str, Check]] = {
         "stiffness_N_per_mm3": _POSITIVE,
         "friction": (float, lambda v: 0 <= v <= 2, "is not between 0 and 2"),
         "stick_N_per_mm3": _POSITIVE,
+        "rings": _count(0, 20),
         "valid_penetration": (float, lambda v: 0 < v <= 0.5, "is not above 0 and up to 0.5"),
     },
     "mesh": {"across": _count(2, 200), "crossing": _count(2, 200), "through": _count(0, 100), "gap": _count(2, 200)},
@@ -148,7 +150,6 @@ _CHECKS: dict[str, dict[str, Check]] = {
         "angle_deg": (float, lambda v: 0 < v <= 60, "is not above 0 and up to 60"),
         "points": _count(1, 200),
         "strain": (float, lambda v: 0 <= v <= 0.1, "is not from 0 to 0.1"),
-        "rings": _count(0, 20),
     },
 }
 
