@@ -31,6 +31,8 @@ _FROM = {
     "Mesh": "meshing",
     "MeshOptions": "meshing",
     "make_cell": "pipeline",
+    "read_study": "study",
+    "run_study": "study",
     "FabricCadError": "errors",
     "InputError": "errors",
     "BuildError": "errors",

@@ -72,6 +72,10 @@ def _parser() -> argparse.ArgumentParser:
         default="calculix",
         help="dialect of the .inp; abaqus adds the *DISTRIBUTION TABLE that CalculiX does not know (default: calculix)",
     )
+    study = command("study", _study, "run a study of many fabrics into OUT/<study>; the same command again goes on")
+    study.add_argument("file", metavar="STUDY.toml", help="base row, factors, design and depth (README, 'Studies')")
+    study.add_argument("--scheduler", metavar="ADDRESS", help="a running Dask cluster, e.g. tcp://host:8786")
+    study.add_argument("--workers", type=_count, metavar="N", help="processes on this machine (default: one a core)")
     show = command("show", _show, "show a row's cell in a window; makes it first if it is not there")
     show.add_argument("row", metavar="ROW", help="name of a row of any family table")
     wif = command("wif", _wif, "print a weaving draft (.wif) as a row to paste into pattern.csv")
@@ -295,6 +299,60 @@ def _show(settings) -> int:
 
     show_cell(read_mesh(mesh_file), settings.row)
     return 0
+
+
+def _study(settings) -> int:
+    from .study import read_study, run_study
+
+    study = read_study(settings.file, settings.families)
+    progress = _Units(settings.quiet)
+    try:
+        counts = run_study(study, settings.out, settings.scheduler, settings.workers, progress)
+    finally:
+        progress.end()
+    if not settings.quiet:
+        units = counts.done + counts.refused + counts.failed
+        print(
+            f"{study.name}: {units} units: {counts.done} done, {counts.refused} refused, {counts.failed} failed"
+            + (f"; {counts.before} of them needed no run" if counts.before else "")
+        )
+        for name in ("table.parquet", "table.csv", "sensitivity.csv", "sensitivity.png"):
+            if (counts.folder / name).exists():
+                print(f"  {counts.folder / name}")
+    return 0
+
+
+class _Units:
+    """A study's progress on standard error: in place on a terminal, a line every ten seconds elsewhere."""
+
+    def __init__(self, quiet: bool) -> None:
+        self.quiet, self.terminal, self.told = quiet, sys.stderr.isatty(), 0.0
+
+    def __call__(self, progress) -> None:
+        if self.quiet or not self.terminal and progress.seconds < self.told + 10.0:
+            return
+        self.told = progress.seconds
+        left = f"{_clock(progress.left)} left" if progress.rate else "starting"
+        text = f"  {progress.finished} of {progress.units} units, {progress.rate:.2f}/s, {left}"
+        print(
+            f"\r\033[K{text}" if self.terminal else text, end="" if self.terminal else "\n", file=sys.stderr, flush=True
+        )
+
+    def end(self) -> None:
+        if self.terminal and not self.quiet:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def _clock(seconds: float) -> str:
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{seconds:02d}" if hours else f"{minutes}:{seconds:02d}"
+
+
+def _count(text: str) -> int:
+    if not (text.isdigit() and int(text)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number above 0")
+    return int(text)
 
 
 def _wif(settings) -> int:
