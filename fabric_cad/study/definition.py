@@ -165,6 +165,8 @@ class _Reader:
         if mesh and depth in ("identify", "cell"):
             self.wrong(f"has no meaning at depth {depth}", "mesh")
         base = self.base(found.get("base"), families)
+        if base is not None:
+            self.check_mesh(base, mesh)
         factors = self.factors(base, found.get("factors", {}), design) if base is not None else {}
         if base is not None and not self.problems:
             self.check_size(factors, design, found.get("samples", 0))
@@ -209,6 +211,21 @@ class _Reader:
                 else:
                     self.problems.append(problem)
         return None
+
+    def check_mesh(self, base: Family, mesh: Mapping) -> None:
+        """What the base row cannot be meshed with."""
+        from ..identification import identify
+        from ..meshing.options import mesh_options
+
+        try:
+            fabric = identify(base)[base.names[0]]
+        except InputError:
+            return  # a factor may make it one
+        try:
+            mesh_options(fabric, **mesh)
+        except InputError as error:
+            for problem in error.problems:
+                self.wrong(problem.message, f"mesh.{problem.column}")
 
     def factors(self, base: Family, content: Mapping, design: str | None) -> dict[str, Factor]:
         if not content and "factors" in self.content and isinstance(self.content["factors"], dict):

@@ -136,10 +136,8 @@ def _volumes(table: Family, found: Identified, weaves, wefts, warps) -> dict[str
     }
     tex = {d: data[f"{d}_linear_density_tex"] for d in DIRECTIONS}
     lengths = {d: 1 + solved[f"{d}_crimp"] for d in DIRECTIONS}
-    areal = sum(
-        tex[d] * lengths[d] / solved[f"{crossed}_crossed_spacing_mm"]
-        for d, crossed in zip(DIRECTIONS, DIRECTIONS[::-1])
-    )
+    across = {d: solved[f"{crossed}_crossed_spacing_mm"] for d, crossed in zip(DIRECTIONS, reversed(DIRECTIONS))}
+    areal = sum(tex[d] * lengths[d] / across[d] for d in DIRECTIONS)
     if not np.isnan(areal).all():
         figures["volumes.areal_density_g_m2"] = areal
     for d, count, extent in (("weft", wefts, x), ("warp", warps, y)):

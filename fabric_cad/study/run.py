@@ -68,7 +68,8 @@ def run_study(
 
     Leaves ``table.parquet`` and ``table.csv`` (one row a unit: factors, status, reason, figures),
     ``sensitivity.csv`` and ``sensitivity.png`` where something varies, ``seconds.csv`` (times of every unit
-    and stage, not at depth identify) and, where the study keeps them, the units' files in ``cells``. Raises :class:`FabricCadError`; what is finished stays.
+    and stage, not at depth identify) and, where the study keeps them, the units' files in ``cells``.
+    Raises :class:`FabricCadError`; what is finished stays.
     """
     folder = Path(out) / study.name
     with held(folder):
