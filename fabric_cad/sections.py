@@ -205,8 +205,9 @@ def contact_section(
 ) -> Section:
     """Section in a crossing: contact profile on one side, free parabola on the other.
 
-    The same arguments give the same section again: the yarns of a cell share theirs. ``turns`` says whether the crossed yarn changes sides just left and right of this one,
-    ``below`` whether the contact is on the bottom. (Fig. 9, 17)
+    ``turns`` says whether the crossed yarn changes sides just left and right of this one,
+    ``below`` whether the contact is on the bottom. The same arguments give the same section
+    again: the yarns of a cell share theirs. (Fig. 9, 17)
     """
     if not below:
         flipped = replace(frame, splits={"bottom": frame.splits["top"], "top": frame.splits["bottom"]})

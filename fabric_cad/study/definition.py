@@ -237,7 +237,7 @@ class _Reader:
         for column, value in content.items():
             key, shown = f"factors.{column}", f"factor {column}"
             if column not in known:
-                nearest = difflib.get_close_matches(column.lower(), known, n=1, cutoff=0.3)
+                nearest = difflib.get_close_matches(column.lower(), known, n=1)
                 hint = f"; did you mean {nearest[0]}?" if nearest else ""
                 self.wrong(f"no column of {base.family}.csv that can vary{hint}", key, shown)
                 continue

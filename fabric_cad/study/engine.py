@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import logging
 import os
+import signal
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 
 from ..errors import FabricCadError, InputError
 
 _MISSING = "a study of cells needs dask.distributed: pip install 'fabric-cad[study]'"
-_TICK = 0.5  # s between two looks at the clock
+_TICK = 0.5  # s between two looks at the workers
+_GATHER = 60.0  # s within which a finished result must arrive
 
 
 def run_tasks(
@@ -21,63 +24,77 @@ def run_tasks(
 ) -> Iterator[tuple[str, object] | None]:
     """(name, result) of ``work(*arguments)`` for every task (name, arguments), in the order in which they end.
 
-    A result is an exception where the task ended so, or its worker, twice. None is yielded every
-    now and then while nothing ends. Runs on the cluster at ``scheduler``, or on ``workers`` (default:
-    one a core) processes of this machine. No more tasks are sent than there are threads to run them,
-    so that a worker that dies takes no other task with it. Raises :class:`FabricCadError` where the
-    scheduler cannot be reached or is lost.
+    A result is an exception where the task ended so twice; ChildProcessError says that its workers
+    died. None is yielded every now and then while nothing ends. Runs on the cluster at ``scheduler``,
+    or on ``workers`` (default: one a core) processes of this machine. A worker is sent one task at a
+    time, so that one that dies takes no other task with it, whatever the cluster does about its
+    failures. Raises :class:`FabricCadError` where the scheduler cannot be reached or is lost.
     """
     try:
-        from distributed import wait
+        import distributed  # noqa: F401
     except ImportError as error:
         raise FabricCadError(_MISSING) from error
-    waiting, tries = iter(tasks), {}
+    waiting, again, tries = iter(tasks), [], {}
     with _client(scheduler, workers) as client:
-        running: dict = {}
-
-        def send(name: str, arguments: tuple) -> None:
-            tries[name] = tries.get(name, 0) + 1
-            key = f"fabric-cad-{os.urandom(8).hex()}"
-            running[client.submit(work, *arguments, key=key, pure=False)] = name, arguments
-
+        running: dict[str, tuple] = {}  # worker: (future, name, arguments)
         more = True
-        while more or running:
-            while more and len(running) < max(1, sum(client.nthreads().values())):
-                task = next(waiting, None)
-                if more := task is not None:
-                    send(*task)
-            if not running:
-                break
-            try:
-                wait(list(running), timeout=_TICK, return_when="FIRST_COMPLETED")
-            except TimeoutError:
-                if client.status != "running":
-                    raise FabricCadError(f"the scheduler at {scheduler} is lost") from None
+        while True:
+            there = client.nthreads()
+            for worker in there:
+                if worker in running:
+                    continue
+                task = again.pop() if again else next(waiting, None)
+                more = task is not None
+                if not more:
+                    break
+                name, arguments = task
+                tries[name] = tries.get(name, 0) + 1
+                key = f"fabric-cad-{os.urandom(8).hex()}"
+                running[worker] = client.submit(work, *arguments, key=key, pure=False, workers=[worker]), *task
+            if not (running or again or more):
+                return
+            if not _wait([future for future, *_ in running.values()], client):
                 yield None
-            for future in [each for each in running if each.done()]:
-                name, arguments = running.pop(future)
-                if future.status == "finished":
-                    yield name, future.result()
-                elif _died(future) or tries[name] > 1:
-                    yield name, _error(future)
-                else:
-                    send(name, arguments)
+            for worker, (future, name, arguments) in list(running.items()):
+                if future.done() or worker not in there:
+                    del running[worker]
+                    result = _result(future)
+                    if isinstance(result, Exception) and tries[name] < 2:
+                        again.append((name, arguments))
+                    else:
+                        yield name, result
 
 
-def _died(future) -> bool:
-    """True where the scheduler gave a task up: its workers died, as often as the cluster allows."""
+def _wait(futures: list, client) -> bool:
+    """Wait for one of the futures, or for a moment. Raises :class:`FabricCadError` where the scheduler is gone."""
+    from distributed import wait
+
+    if client.status != "running":
+        raise FabricCadError("the scheduler is lost; the same command goes on once it is back")
+    if not futures:
+        time.sleep(_TICK)
+        return False
+    try:
+        wait(futures, timeout=_TICK, return_when="FIRST_COMPLETED")
+    except TimeoutError:
+        return False
+    return True
+
+
+def _result(future) -> object:
+    """What a task gave, or the exception it ended in."""
     from distributed import KilledWorker
 
-    return future.status == "error" and isinstance(future.exception(), KilledWorker)
-
-
-def _error(future) -> BaseException:
-    from distributed import KilledWorker
-
-    if future.status != "error":
-        return RuntimeError(f"the cluster has {future.status} the unit")
-    error = future.exception()
-    return ChildProcessError("its worker died") if isinstance(error, KilledWorker) else error
+    if future.status == "error":
+        error = future.exception()
+        return ChildProcessError("its worker died") if isinstance(error, KilledWorker) else error
+    try:
+        if future.status == "finished":
+            return future.result(timeout=_GATHER)
+    except (TimeoutError, RuntimeError):
+        pass  # the worker died with the result
+    future.cancel()
+    return ChildProcessError("its worker died")
 
 
 @contextmanager
@@ -88,23 +105,31 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator:
     with ExitStack() as stack:
         if scheduler is not None:
             try:
-                client = Client(scheduler, timeout="10s")
+                client = Client(scheduler, timeout="5s")
             except (OSError, ValueError) as error:
                 raise InputError(f"--scheduler {scheduler}: no scheduler answers there") from error
         else:
             stack.enter_context(
-                dask.config.set({"distributed.scheduler.allowed-failures": 1, "logging.distributed": "critical"})
+                dask.config.set({"distributed.scheduler.allowed-failures": 0, "logging.distributed": "critical"})
             )
             cluster = LocalCluster(
-                n_workers=workers or _cores(),
+                n_workers=0,
                 threads_per_worker=1,
                 host="127.0.0.1",
                 dashboard_address=None,
                 silence_logs=logging.CRITICAL,
             )
             stack.enter_context(cluster)
+            cluster.sync(_leave_interrupts_alone)
+            cluster.scale(workers or _cores())
             client = Client(cluster)
         yield stack.enter_context(client)
+
+
+async def _leave_interrupts_alone() -> None:
+    """Keep Ctrl-C from this thread and all that it starts, the workers: it is the study that stops, and ends them."""
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
 def _cores() -> int:
