@@ -36,7 +36,7 @@ design = "grid"
 depth = "{depth}"
 {more}
 [factors]
-weft_width_mm = {{ from = 2.8, to = {to}, steps = {steps} }}
+weft_width_mm = {widths}
 """
 COARSE = "mesh = { across = 6, gap = 2 }"
 
@@ -48,8 +48,8 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def cells(depth="mesh", more=COARSE, to=4.4, steps=3):
-    return CELLS.format(depth=depth, more=more, to=to, steps=steps)
+def cells(depth="mesh", more=COARSE, widths=(2.8, 3.6, 4.4)):
+    return CELLS.format(depth=depth, more=more, widths=list(widths))
 
 
 def study(text, name="study.toml"):
@@ -121,14 +121,14 @@ def test_a_mesh_study_on_a_cluster(here, cluster):
 
     again = run_study(study(cells()), scheduler=address)  # nothing is run again
     assert (again.before, lines()) == (3, 3) and Path("build/study/table.parquet").read_bytes() == table
-    wider = run_study(study(cells(to=6.0, steps=5)), scheduler=address)
+    wider = run_study(study(cells(widths=(2.8, 3.6, 4.4, 5.2, 6.0))), scheduler=address)
     assert (wider.done, wider.refused, wider.before) == (3, 2, 5)
     assert read_table("build/study")["status"].tolist() == ["done", "done", "done", "refused", "refused"]
     assert lines() == 3
 
 
 def test_kept_files_are_in_a_folder_of_the_unit(here, cluster):
-    run_study(study(cells("cell", "keep = true", steps=2)), scheduler=cluster.scheduler_address)
+    run_study(study(cells("cell", "keep = true", (2.8, 4.4))), scheduler=cluster.scheduler_address)
     kept = sorted(path.relative_to("build/study/cells").as_posix() for path in Path("build/study/cells").glob("*/*"))
     assert kept == [f"plain_{k}/{name}" for k in (0, 1) for name in (f"plain_{k}.step", "report.json", "solved.csv")]
     report = json.loads(Path("build/study/cells/plain_1/report.json").read_text())
@@ -136,7 +136,7 @@ def test_kept_files_are_in_a_folder_of_the_unit(here, cluster):
 
 
 def test_a_unit_over_its_limit_is_recorded_as_failed_and_not_tried_again(here):
-    text = cells("cell", "limit_seconds = 0.2", steps=2)  # loading CadQuery takes longer
+    text = cells("cell", "limit_seconds = 0.2", (2.8, 4.4))  # loading CadQuery takes longer
     one = run_study(study(text), workers=2)
     assert (one.done, one.failed) == (0, 2)
     reason = read_table("build/study")["reason"][0]
@@ -177,7 +177,7 @@ def wait_for(condition, process, seconds=120.0):
 @pytest.mark.skipif(os.name != "posix", reason="kills a process group")
 def test_three_kills_leave_the_same_table(here):
     chance = random.Random(5)
-    Path("study.toml").write_text(cells("cell", "", steps=10))
+    Path("study.toml").write_text(cells("cell", "", np.linspace(2.8, 4.4, 10).tolist()))
     for _ in range(3):
         before = lines()
         process = start()
@@ -200,7 +200,7 @@ def test_three_kills_leave_the_same_table(here):
 
 @pytest.mark.skipif(os.name != "posix", reason="sends a POSIX signal")
 def test_ctrl_c_leaves_a_study_that_goes_on(here):
-    Path("study.toml").write_text(cells("cell", "", steps=12))
+    Path("study.toml").write_text(cells("cell", "", np.linspace(2.8, 4.4, 12).tolist()))
     process = start()
     wait_for(lambda: lines() >= 1, process)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does

@@ -8,6 +8,7 @@ import signal
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from multiprocessing import resource_tracker
 
 from ..errors import FabricCadError, InputError
 
@@ -129,6 +130,7 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator:
 async def _leave_interrupts_alone() -> None:
     """Keep Ctrl-C from this thread and all that it starts, the workers: it is the study that stops, and ends them."""
     if hasattr(signal, "pthread_sigmask"):
+        resource_tracker.ensure_running()  # would lift the mask when it is started with the first worker
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
