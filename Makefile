@@ -2,6 +2,7 @@
 
 PYTHON ?= python3
 WEAVE ?= twill32
+STUDY ?= families/measured.toml
 OPTIONS ?=
 BIN := .venv/bin
 READY := .venv/.ready
@@ -46,6 +47,10 @@ families: $(READY) ## solve every row of every table into build/families/<family
 validate: $(READY) ## measured against model, standard deviations propagated
 	@$(BIN)/fabric-cad validate
 
+.PHONY: study
+study: $(READY) ## STUDY=file.toml: a study of many fabrics into build/<file>; again: goes on where it stopped
+	@$(BIN)/fabric-cad study $(STUDY) $(OPTIONS)
+
 .PHONY: test
 test: $(READY) ## run the tests
 	@$(BIN)/python -m pytest -n 2 --dist loadfile
@@ -69,7 +74,7 @@ golden: $(READY) ## rewrite the golden decks of the tests
 
 .PHONY: lock
 lock: ## renew requirements.lock from pyproject.toml (needs uv)
-	@uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --generate-hashes \
+	@uv pip compile pyproject.toml --extra dev --extra study --universal --python-version 3.11 --generate-hashes \
 		--no-header --no-annotate --no-emit-index-url --no-emit-find-links -q -o requirements.lock
 
 .PHONY: clean

@@ -81,7 +81,11 @@ def _parser() -> argparse.ArgumentParser:
     wif = command("wif", _wif, "print a weaving draft (.wif) as a row to paste into pattern.csv")
     wif.add_argument("draft", metavar="DRAFT.wif", help="a draft with a tie-up and treadling, or a liftplan")
     wif.add_argument("--name", required=True, metavar="NAME", help="name of the row")
-    command("init", _init, "put the shipped family tables into ./families (files that exist are kept)")
+    command(
+        "init",
+        _init,
+        "put the shipped family tables and an example of a study into ./families (files that exist are kept)",
+    )
     return parser
 
 
@@ -374,7 +378,7 @@ def _init(settings) -> int:
     target = Path("families")
     try:
         target.mkdir(exist_ok=True)
-        for table in sorted(shipped_families().glob("*.csv")):
+        for table in sorted([*shipped_families().glob("*.csv"), *shipped_families().glob("*.toml")]):
             place = target / table.name
             if place.exists():
                 message = f"{place}: kept, it is there already"

@@ -74,6 +74,7 @@ def run_study(
     folder = Path(out) / study.name
     with held(folder):
         digest = _digest(study)
+        written = written_digest(folder)  # and a lack of pyarrow is told before any work
         samples = DESIGNS[study.design](
             study.factors, {name: base_value(study.base, name) for name in study.factors}, study.samples, study.seed
         )
@@ -88,7 +89,7 @@ def run_study(
             status, before = ["done"] * len(table), 0
             for at in reasons:
                 status[at] = "refused"
-            seconds, finished = {}, written_digest(folder) == digest
+            seconds, finished = {}, written == digest
             before = len(table) if finished else 0
         else:
             outcomes, before = _run_units(

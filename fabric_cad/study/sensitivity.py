@@ -12,7 +12,9 @@ grid, latin-hypercube     Spearman's rank correlation and its p-value (scipy.sta
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -135,3 +137,13 @@ METHODS: dict[str, Callable[[Samples, np.ndarray], list[Row]]] = {
     "grid": rank_sensitivity,
     "latin-hypercube": rank_sensitivity,
 }
+
+
+def read_sensitivities(folder: str | Path) -> list[Row]:
+    """The rows of the ``sensitivity.csv`` in a study's folder; numbers as such, None where a cell is empty."""
+    with open(Path(folder) / "sensitivity.csv", newline="", encoding="utf-8") as file:
+        texts = ("figure", "factor", "value")
+        return [
+            {name: cell if name in texts else float(cell) if cell else None for name, cell in row.items()}
+            for row in csv.DictReader(file)
+        ]
