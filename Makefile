@@ -68,6 +68,10 @@ stability: $(READY) ## 200 random fabrics, each through CAD and mesh in a child 
 bench: $(READY) ## time and memory of every stage, as one table
 	@$(BIN)/python tests/bench.py
 
+.PHONY: bench-compare
+bench-compare: $(READY) ## A=run.json B=run.json: two runs of bench side by side (default: the last two)
+	@$(BIN)/python tests/bench.py --compare $(A) $(B)
+
 .PHONY: golden
 golden: $(READY) ## rewrite the golden decks of the tests
 	@$(BIN)/python -m pytest -n 0 tests/test_deck.py --rewrite-golden

@@ -67,8 +67,8 @@ def run_study(
     """Run a study into the folder ``out/<study>``; units that an earlier run has finished are not run again.
 
     Leaves ``table.parquet`` and ``table.csv`` (one row a unit: factors, status, reason, figures),
-    ``sensitivity.csv`` and ``sensitivity.png`` where something varies, ``seconds.csv`` (times of every unit
-    and stage, not at depth identify) and, where the study keeps them, the units' files in ``cells``.
+    ``sensitivity.csv`` and ``sensitivity.png`` where something varies, ``costs.csv`` (times and memory of
+    every unit, not at depth identify) and, where the study keeps them, the units' files in ``cells``.
     Raises :class:`FabricCadError`; what is finished stays.
     """
     folder = Path(out) / study.name
@@ -89,7 +89,7 @@ def run_study(
             status, before = ["done"] * len(table), 0
             for at in reasons:
                 status[at] = "refused"
-            seconds, finished = {}, written == digest
+            costs, finished = {}, written == digest
             before = len(table) if finished else 0
         else:
             outcomes, before = _run_units(
@@ -101,10 +101,10 @@ def run_study(
                 if outcome.reason:
                     reasons[at] = outcome.reason
             figures = _gathered({at: each.figures for at, each in outcomes.items()}, len(table))
-            seconds = _gathered({at: each.seconds for at, each in outcomes.items()}, len(table))
+            costs = _gathered({at: each.costs for at, each in outcomes.items()}, len(table))
             finished = False
         if not finished:
-            _write(study, folder, samples, status, reasons, figures, seconds, digest)
+            _write(study, folder, samples, status, reasons, figures, costs, digest)
         counts = {name: status.count(name) for name in ("done", "refused", "failed")}
         return Counts(folder, **counts, before=before)
 
@@ -188,7 +188,7 @@ def _outcome(result: object, study: Study) -> Outcome:
     return Outcome("failed", f"{type(result).__name__}: {result}")
 
 
-def _write(study: Study, folder: Path, samples: Samples, status, reasons, figures, seconds, digest: str) -> None:
+def _write(study: Study, folder: Path, samples: Samples, status, reasons, figures, costs, digest: str) -> None:
     units = len(samples)
     columns = {"unit": np.arange(units), **samples.labels, **samples.values}
     columns |= {"status": status, "reason": [reasons.get(at) for at in range(units)], **figures}
@@ -202,9 +202,9 @@ def _write(study: Study, folder: Path, samples: Samples, status, reasons, figure
             from .picture import draw_sensitivities
 
             draw_sensitivities(study.name, study.design, found, aside / "sensitivity.png")
-        if seconds:
-            rows = [dict(zip(seconds, values)) for values in zip(*seconds.values())]
-            _write_csv(aside / "seconds.csv", [{"unit": at, **row} for at, row in enumerate(rows)])
+        if costs:
+            rows = [dict(zip(costs, values)) for values in zip(*costs.values())]
+            _write_csv(aside / "costs.csv", [{"unit": at, **row} for at, row in enumerate(rows)])
 
 
 def _write_csv(path: Path, rows: Sequence[dict]) -> None:

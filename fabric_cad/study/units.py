@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import faulthandler
 import os
+import sys
 import tempfile
 import threading
 import time
@@ -21,12 +22,16 @@ from .figures import flat
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a unit: ``done``, ``refused`` (no fabric) or ``failed``, why, its figures, and its times in s."""
+    """What became of a unit: ``done``, ``refused`` (no fabric) or ``failed``, why, and its figures.
+
+    ``costs`` are s by stage and in all (``unit``), and ``process_megabytes``, the most that the process
+    it ran in has held so far.
+    """
 
     status: str
     reason: str = ""
     figures: Mapping[str, object] = field(default_factory=dict)
-    seconds: Mapping[str, float] = field(default_factory=dict)
+    costs: Mapping[str, float] = field(default_factory=dict)
 
 
 def _cell(row: Family, mesh: Mapping, folder: Path, stages: Stages) -> dict:
@@ -64,8 +69,9 @@ def run_unit(row: Family, depth: str, mesh: Mapping, limit: float, keep: str | N
             return Outcome("refused", reason_of(error))
         except FabricCadError as error:
             return Outcome("failed", str(error))
-        seconds = {name: round(value, 4) for name, value in stages.seconds.items()}
-        return Outcome("done", "", flat(report), seconds | {"unit": round(time.perf_counter() - start, 4)})
+        seconds = stages.seconds | {"unit": time.perf_counter() - start}
+        costs = {name: round(value, 4) for name, value in seconds.items()}
+        return Outcome("done", "", flat(report), costs | _memory())
 
 
 def _kept(row: Family, depth: str, mesh: Mapping, keep: str | None, stages: Stages) -> dict:
@@ -76,6 +82,15 @@ def _kept(row: Family, depth: str, mesh: Mapping, keep: str | None, stages: Stag
         report = DEPTHS[depth](row, mesh, folder, stages)
         write_report(report, folder)
         return report
+
+
+def _memory() -> dict[str, float]:
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return {}
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return {"process_megabytes": peak / (1e6 if sys.platform == "darwin" else 1e3)}
 
 
 def reason_of(error: InputError) -> str:
