@@ -162,7 +162,11 @@ class Bench:
         file = self.study("many", "plain_measured", "identify", fabrics, '"normal"', '"normal"')
         arguments = [str(file), str(ROOT / "families")]
         alone = [
-            float(subprocess.run([PYTHON, "-c", code, *arguments], check=True, capture_output=True, text=True).stdout.split()[-1])
+            float(
+                subprocess.run(
+                    [PYTHON, "-c", code, *arguments], check=True, capture_output=True, text=True
+                ).stdout.split()[-1]
+            )
             for _ in range(self.runs)
         ]
         whole = self.command(f"study, {fabrics} fabrics, with table and picture", self.run(file), runs=1)
@@ -199,11 +203,12 @@ class Bench:
             Figure(f"{whole.what}, a cell", whole.seconds / count, memory, size=f"{count} cells", promised=promised),
             Figure("  the first of a worker", statistics.median(row["unit"] for row in first)),
             Figure("  one more", statistics.median(row["unit"] for row in more), stages=stages),
+            Figure("  one more, processor time", statistics.median(row["processor"] for row in more)),
             Figure(whole.what, whole.seconds, memory, promised="below 1500 MB a worker"),
         ]
 
 
-_NO_STAGE = ("unit", "process_megabytes", "load CadQuery")
+_NO_STAGE = ("unit", "processor", "process_megabytes", "load CadQuery")
 _MILLION = ("--across", "36", "--through", "8", "--gap", "44")
 
 FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (

@@ -24,8 +24,8 @@ from .figures import flat
 class Outcome:
     """What became of a unit: ``done``, ``refused`` (no fabric) or ``failed``, why, and its figures.
 
-    ``costs`` are s by stage and in all (``unit``), and ``process_megabytes``, the most that the process
-    it ran in has held so far.
+    ``costs`` are s by stage and in all (``unit``), s of processor time (``processor``), and
+    ``process_megabytes``, the most that the process it ran in has held so far.
     """
 
     status: str
@@ -62,14 +62,14 @@ def run_unit(row: Family, depth: str, mesh: Mapping, limit: float, keep: str | N
     A unit that takes longer than ``limit`` s ends its process, whatever that is doing.
     """
     with _ONE_AT_A_TIME, _ended_after(limit):
-        stages, start = Stages(), time.perf_counter()
+        stages, start, used = Stages(), time.perf_counter(), time.process_time()
         try:
             report = _kept(row, depth, mesh, keep, stages)
         except InputError as error:
             return Outcome("refused", reason_of(error))
         except FabricCadError as error:
             return Outcome("failed", str(error))
-        seconds = stages.seconds | {"unit": time.perf_counter() - start}
+        seconds = stages.seconds | {"unit": time.perf_counter() - start, "processor": time.process_time() - used}
         costs = {name: round(value, 4) for name, value in seconds.items()}
         return Outcome("done", "", flat(report), costs | _memory())
 
