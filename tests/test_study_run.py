@@ -209,3 +209,12 @@ def test_ctrl_c_leaves_a_study_that_goes_on(here):
     assert told.splitlines()[-1].endswith("of 12 units are finished, the same command goes on from there")
     assert "Traceback" not in told
     assert 1 <= lines() < 12 and not Path("build/study/table.csv").exists()
+
+
+def test_the_readmes_example_runs(here):
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    (example,) = (part.split("```")[0] for part in readme.split("```toml\n")[1:])
+    counts = run_study(study(example))
+    assert counts.done + counts.refused == 200 and counts.done > 100
+    rows = Path("build/study/sensitivity.csv").read_text().splitlines()
+    assert rows[0] == "figure,factor,spearman,p_value" and len(rows) > 9
