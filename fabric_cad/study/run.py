@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -149,6 +150,7 @@ def _run_units(
     units = {at: table.take([at]) for at in rows}
     keys = {at: unit_key(unit, study.depth, study.mesh, study.keep) for at, unit in units.items()}
     cells = str((folder / "cells").absolute()) if study.keep else None
+    copies = Counter(keys.values())
     store = Store(folder)
     missing = {key: at for at, key in reversed(keys.items()) if key not in store.outcomes}  # equal units once
     missing = dict(reversed(missing.items()))
@@ -169,7 +171,7 @@ def _run_units(
             if result is not None:
                 key, outcome = result
                 store.add(key, _outcome(outcome, study))
-                ended += 1
+                ended += copies[key]
             tell()
     except KeyboardInterrupt as error:
         done = before + ended
