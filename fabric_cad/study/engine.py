@@ -117,7 +117,7 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator:
                 n_workers=0,
                 threads_per_worker=1,
                 host="127.0.0.1",
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",  # any port that is free
                 silence_logs=logging.CRITICAL,
             )
             stack.enter_context(cluster)
