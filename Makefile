@@ -2,6 +2,7 @@
 
 PYTHON ?= python3
 WEAVE ?= twill32
+STUDY ?= families/measured.toml
 OPTIONS ?=
 BIN := .venv/bin
 READY := .venv/.ready
@@ -54,6 +55,10 @@ families: $(READY) ## solve every row of every table into build/families/<family
 validate: $(READY) ## measured against model, standard deviations propagated
 	@$(BIN)/fabric-cad validate
 
+.PHONY: study
+study: $(READY) ## STUDY=file.toml: a study of many fabrics into build/<file>; again: goes on where it stopped
+	@$(BIN)/fabric-cad study $(STUDY) $(OPTIONS)
+
 .PHONY: test
 test: $(READY) ## run the tests
 	@$(BIN)/python -m pytest -n 2 --dist loadfile
@@ -71,13 +76,17 @@ stability: $(READY) ## 200 random fabrics, each through CAD and mesh in a child 
 bench: $(READY) ## time and memory of every stage, as one table
 	@$(BIN)/python tests/bench.py
 
+.PHONY: bench-compare
+bench-compare: $(READY) ## A=run.json B=run.json: two runs of bench side by side (default: the last two)
+	@$(BIN)/python tests/bench.py --compare $(A) $(B)
+
 .PHONY: golden
 golden: $(READY) ## rewrite the golden decks of the tests
 	@$(BIN)/python -m pytest -n 0 tests/test_deck.py --rewrite-golden
 
 .PHONY: lock
 lock: ## renew requirements.lock from pyproject.toml (needs uv)
-	@uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --generate-hashes \
+	@uv pip compile pyproject.toml --extra dev --extra study --universal --python-version 3.11 --generate-hashes \
 		--no-header --no-annotate --no-emit-index-url --no-emit-find-links -q -o requirements.lock
 
 .PHONY: clean

@@ -34,6 +34,8 @@ _FROM = {
     "make_tension": "simulation.run",
     "make_shear": "simulation.run",
     "Solver": "simulation.job",
+    "read_study": "study",
+    "run_study": "study",
     "FabricCadError": "errors",
     "InputError": "errors",
     "BuildError": "errors",

@@ -99,13 +99,20 @@ def _parser() -> argparse.ArgumentParser:
             choices=("calculix", "abaqus"),
             help="write the deck in a solver's dialect and run nothing",
         )
+    study = command("study", _study, "run a study of many fabrics into OUT/<study>; the same command again goes on")
+    study.add_argument("file", metavar="STUDY.toml", help="base row, factors, design and depth (README, 'Studies')")
+    study.add_argument("--scheduler", metavar="ADDRESS", help="a running Dask cluster, e.g. tcp://host:8786")
+    study.add_argument("--workers", type=_count, metavar="N", help="processes on this machine (default: one a core)")
     show = command("show", _show, "show a row's cell in a window; makes it first if it is not there")
     show.add_argument("row", metavar="ROW", help="name of a row of any family table")
     wif = command("wif", _wif, "print a weaving draft (.wif) as a row to paste into pattern.csv")
     wif.add_argument("draft", metavar="DRAFT.wif", help="a draft with a tie-up and treadling, or a liftplan")
     wif.add_argument("--name", required=True, metavar="NAME", help="name of the row")
     command(
-        "init", _init, "put the shipped family tables and simulation.toml into ./families (files that exist are kept)"
+        "init",
+        _init,
+        "put the shipped family tables, simulation.toml and an example of a study into ./families "
+        "(files that exist are kept)",
     )
     return parser
 
@@ -387,6 +394,60 @@ def _show(settings) -> int:
     return 0
 
 
+def _study(settings) -> int:
+    from .study import read_study, run_study
+
+    study = read_study(settings.file, settings.families)
+    progress = _Units(settings.quiet)
+    try:
+        counts = run_study(study, settings.out, settings.scheduler, settings.workers, progress)
+    finally:
+        progress.end()
+    if not settings.quiet:
+        units = counts.done + counts.refused + counts.failed
+        print(
+            f"{study.name}: {units} units: {counts.done} done, {counts.refused} refused, {counts.failed} failed"
+            + (f"; {counts.before} of them needed no run" if counts.before else "")
+        )
+        for name in ("table.parquet", "table.csv", "sensitivity.csv", "sensitivity.png"):
+            if (counts.folder / name).exists():
+                print(f"  {counts.folder / name}")
+    return 0
+
+
+class _Units:
+    """A study's progress on standard error: in place on a terminal, a line every ten seconds elsewhere."""
+
+    def __init__(self, quiet: bool) -> None:
+        self.quiet, self.terminal, self.told = quiet, sys.stderr.isatty(), 0.0
+
+    def __call__(self, progress) -> None:
+        if self.quiet or not self.terminal and progress.seconds < self.told + 10.0:
+            return
+        self.told = progress.seconds
+        left = f"{_clock(progress.left)} left" if progress.rate else "starting"
+        text = f"  {progress.finished} of {progress.units} units, {progress.rate:.2f}/s, {left}"
+        print(
+            f"\r\033[K{text}" if self.terminal else text, end="" if self.terminal else "\n", file=sys.stderr, flush=True
+        )
+
+    def end(self) -> None:
+        if self.terminal and not self.quiet:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def _clock(seconds: float) -> str:
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{seconds:02d}" if hours else f"{minutes}:{seconds:02d}"
+
+
+def _count(text: str) -> int:
+    if not (text.isdigit() and int(text)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number above 0")
+    return int(text)
+
+
 def _wif(settings) -> int:
     from .wif import wif_row
 
@@ -406,7 +467,7 @@ def _init(settings) -> int:
     target = Path("families")
     try:
         target.mkdir(exist_ok=True)
-        for table in sorted(file for file in shipped_families().iterdir() if file.suffix in (".csv", ".toml")):
+        for table in sorted([*shipped_families().glob("*.csv"), *shipped_families().glob("*.toml")]):
             place = target / table.name
             if place.exists():
                 message = f"{place}: kept, it is there already"

@@ -8,6 +8,7 @@ beyond them is compared with the model.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,11 +81,11 @@ class _Transitions:
         return self.u_low / 2 + self.gap + self.u_high / 2
 
 
-def _transitions(table: Family, measured: _Measured) -> dict[str, _Transitions]:
+def _transitions(measured: _Measured, floats: dict[str, np.ndarray]) -> dict[str, _Transitions]:
     found = {}
     for direction, crossed in (("weft", "warp"), ("warp", "weft")):
         spacing = 1 / measured.density[crossed]
-        projected = np.sum(_floats(table, direction), axis=0) / 2 * spacing
+        projected = np.sum(floats[direction], axis=0) / 2 * spacing
         # on its low plateau a yarn touches the bottom of the one it crosses, which is high there
         half_low, half_high = measured.chord[crossed, "high"] / 2, measured.chord[crossed, "low"] / 2
         u_low = half_low - measured.offset[crossed, "high"]
@@ -93,9 +94,39 @@ def _transitions(table: Family, measured: _Measured) -> dict[str, _Transitions]:
     return found
 
 
-def _floats(table: Family, direction: str) -> np.ndarray:
-    """Mean lengths of the low and the high floats, shape (2, rows), in crossed yarns."""
-    return np.array([weave.floats(direction) for weave in table.weaves], dtype=float).reshape(-1, 2).T
+def _floats(table: Family) -> dict[str, np.ndarray]:
+    """Mean lengths of a direction's low and high floats, each of shape (2, rows), in crossed yarns."""
+    weaves = {id(weave): weave for weave in table.weaves}  # many rows share one
+    known = {key: (*weave.floats("weft"), *weave.floats("warp")) for key, weave in weaves.items()}
+    found = np.array([known[id(weave)] for weave in table.weaves], dtype=float).reshape(-1, 4).T
+    return {"weft": found[:2], "warp": found[2:]}
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """What became of a table's rows.
+
+    ``columns`` are those of the solved table, as arrays or lists of one value for each of ``rows``, the
+    numbers of the rows that are fabrics; ``refused`` holds for every other row number what makes it none.
+    ``closing`` and ``beyond``, shape (5, fabrics), are the measured quantities of
+    :data:`~fabric_cad.closing.CLOSING` and whether they are beyond what identified the row.
+    """
+
+    columns: Mapping[str, Sequence]
+    rows: np.ndarray
+    refused: Mapping[int, Problem]
+    closing: np.ndarray
+    beyond: np.ndarray
+
+    def comparisons(self) -> tuple[tuple[tuple[str, float, float], ...], ...]:
+        """(quantity, measured, model) of what each fabric measured beyond need."""
+        found: list[list] = [[] for _ in self.rows]
+        for name, measured, beyond in zip(CLOSING, self.closing, self.beyond):
+            at = np.flatnonzero(beyond)
+            model = np.asarray(self.columns[name])[at].tolist()
+            for row, *values in zip(at.tolist(), measured[at].tolist(), model):
+                found[row].append((name, *values))
+        return tuple(map(tuple, found))
 
 
 def identify(table: Family) -> SolvedTable:
@@ -107,29 +138,67 @@ def identify(table: Family) -> SolvedTable:
     Raises :class:`InputError` listing, for every row that is not a fabric, the number that
     makes it so; nothing unconverged is returned.
     """
-    measured = _measured(table)
-    transitions = _transitions(table, measured)
-    used = [_used(measured, at) for at in range(len(table))]
-    problems = [_insufficient(table, measured, at) for at, columns in enumerate(used) if not columns]
-    first, second, least = _close(measured, transitions, used)
-    refusals = [_refusals(table, measured, transitions, closed, least, used) for closed in (first, second)]
-    second_chosen, two = _choose(table, first, second, *refusals)
-    problems += [
-        refusals[int(second_chosen[at])][at] for at in range(len(table)) if at in refusals[int(second_chosen[at])]
-    ]
-    if problems:
-        raise InputError(sorted(problems, key=lambda problem: problem.line))
-    closed, other = second.where(second_chosen, first), first.where(second_chosen, second)
-    return _solved(table, measured, transitions, used, closed, other, two)
+    found = identify_rows(table)
+    if found.refused:
+        raise InputError(sorted(found.refused.values(), key=lambda problem: problem.line))
+    lists = {name: v.tolist() if isinstance(v, np.ndarray) else v for name, v in found.columns.items()}
+    return SolvedTable(lists, found.comparisons())
 
 
-def _used(measured: _Measured, at: int) -> tuple[int, ...]:
-    """Which of CLOSING identify a row; empty where they do not suffice."""
-    given = ~np.isnan(measured.closing[:, at])
-    if measured.balanced[at]:
-        return next(((k,) for k in (0, 2, 4) if given[k]), ())
-    used = tuple(np.flatnonzero(given)[:3].tolist())
-    return used if len(used) == 3 else ()
+def identify_rows(table: Family) -> Identified:
+    """The same row by row: what is no fabric is refused with its reason, and the others are solved."""
+    with np.errstate(all="ignore"):  # refused rows may hold anything
+        measured, floats = _measured(table), _floats(table)
+        transitions = _transitions(measured, floats)
+        used = _used(measured)
+        first, second, least = _close(measured, transitions, used)
+        refusals = [_refusals(table, measured, transitions, closed, least, used) for closed in (first, second)]
+        second_chosen, two = _choose(table, first, second, *refusals)
+        refused = {at: _insufficient(table, measured, at) for at in np.flatnonzero(used.number == 0).tolist()}
+        for chosen, found in enumerate(refusals):
+            refused |= {at: problem for at, problem in found.items() if second_chosen[at] == chosen}
+        closed, other = second.where(second_chosen, first), first.where(second_chosen, second)
+        columns = _solved(table, measured, transitions, floats, used, closed, other, two)
+    beyond = ~np.isnan(measured.closing) & [used.where(lambda held: k not in held) for k in range(len(CLOSING))]
+    rows = np.arange(len(table))
+    if refused:
+        rows = np.delete(rows, list(refused))
+        columns = {
+            name: values[rows] if isinstance(values, np.ndarray) else [values[at] for at in rows.tolist()]
+            for name, values in columns.items()
+        }
+    return Identified(columns, rows, refused, measured.closing[:, rows], beyond[:, rows])
+
+
+_SETS = ((), *RULES)
+"""What can identify a row, by number of quantities in CLOSING; nothing where its measurements do not suffice."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Used:
+    """Which of CLOSING identify each row: ``number``, shape (rows,), indexes :data:`_SETS`."""
+
+    number: np.ndarray
+
+    def __getitem__(self, at: int) -> tuple[int, ...]:
+        return _SETS[self.number[at]]
+
+    def where(self, test: Callable[[tuple[int, ...]], bool]) -> np.ndarray:
+        """Boolean (rows,): the row's set passes a test."""
+        return np.array([bool(test(columns)) for columns in _SETS])[self.number]
+
+
+def _used(measured: _Measured) -> _Used:
+    given = ~np.isnan(measured.closing)
+    # every combination of given quantities, as a binary number, and a last bit for balanced
+    codes = 2 ** np.arange(len(CLOSING)) @ given + 2 ** len(CLOSING) * measured.balanced
+    sets = np.zeros(2 ** (len(CLOSING) + 1), dtype=int)
+    for code in range(len(sets)):
+        held = tuple(k for k in range(len(CLOSING)) if code >> k & 1)
+        alone = next(((k,) for k in (0, 2, 4) if k in held), ())
+        three = held[:3] if len(held) >= 3 else ()
+        sets[code] = _SETS.index(alone if code >> len(CLOSING) else three)
+    return _Used(sets[codes])
 
 
 def _insufficient(table: Family, measured: _Measured, at: int) -> Problem:
@@ -155,16 +224,13 @@ def _close(measured, transitions, used) -> tuple[Closed, Closed, np.ndarray]:
 
     Third, the least fabric thickness the other two numbers allow where (15) bounds it, mm.
     """
-    rows = len(used)
+    rows = len(used.number)
     amplitudes = [transitions[d].rise * transitions[d].slope(measured.closing[k]) for k, d in enumerate(DIRECTIONS)]
     values = np.concatenate([np.reshape(amplitudes, (2, rows)), measured.closing[2:]])
     solutions = [Closed(*np.full((4, rows), np.nan)) for _ in range(2)]
     least = np.full(rows, np.nan)
-    groups: dict[tuple[int, ...], list[int]] = {}
-    for at, columns in enumerate(used):
-        groups.setdefault(columns, []).append(at)
-    groups.pop((), None)
-    for columns, group in groups.items():
+    for number in np.unique(used.number[used.number > 0]).tolist():
+        columns, group = _SETS[number], np.flatnonzero(used.number == number)
         given = values[np.ix_(columns, group)]
         found = RULES[columns](*given)
         for solution, closed in zip(solutions, (found[0], found[-1])):
@@ -181,7 +247,7 @@ def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Pr
 
     def refuse(mask, column, message) -> None:
         for at in np.flatnonzero(mask).tolist():
-            if used[at]:
+            if used.number[at]:
                 names = [CLOSING[k] for k in used[at]]
                 found.setdefault(at, table.problem(at, column(names, at), message(at)))
 
@@ -201,7 +267,7 @@ def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Pr
             lambda at: f"{fabric[at]:g} is below {' + '.join(SYMBOLS[k] for k in used[at][:2])} = {least[at]:.4g} mm",
         )
         refuse(
-            np.array([columns in ALONE for columns in used], dtype=bool) & (fabric <= least * (1 + ROUNDING)),
+            used.where(ALONE.__contains__) & (fabric <= least * (1 + ROUNDING)),
             last,
             lambda at: (
                 f"{fabric[at]:g} is A + b of the same direction again and says nothing of the "
@@ -289,18 +355,17 @@ def _choose(table, first, second, wrong_first, wrong_second) -> tuple[np.ndarray
     Where the fabric thickness leaves two solutions the row's ``thicker`` cell decides;
     without it the more nearly equal yarn thicknesses, on a tie the weft as the thicker.
     """
-    rows = range(len(table))
     with np.errstate(invalid="ignore"):
         differ = np.abs(first.b1 - second.b1) + np.abs(first.A1 - second.A1) > ROUNDING * first.fabric
         more_even = np.abs(second.b1 - second.b2) < np.abs(first.b1 - first.b2) * (1 - ROUNDING)
-    possible_first = np.array([at not in wrong_first for at in rows], dtype=bool)
-    possible_second = np.array([at not in wrong_second for at in rows], dtype=bool)
+    possible_first, possible_second = np.ones((2, len(table)), dtype=bool)
+    possible_first[list(wrong_first)] = possible_second[list(wrong_second)] = False
     asked_weft, asked_warp = (np.array([each == d for each in table.thicker], dtype=bool) for d in DIRECTIONS)
     by_default = np.where(possible_first & possible_second, more_even, possible_second)
     return differ & (asked_warp | (by_default & ~asked_weft)), differ & possible_first & possible_second
 
 
-def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTable:
+def _solved(table, measured, transitions, floats, used, closed, other, two) -> dict[str, Sequence]:
     amplitude = {"weft": closed.A1, "warp": closed.A2}
     thickness = {"weft": closed.b1, "warp": closed.b2}
     slope = {d: amplitude[d] / transitions[d].rise for d in DIRECTIONS}
@@ -317,7 +382,7 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
         "section": list(table.sections),
         "lateral_height_mm": measured.lateral,
         "parameters": _parameters(table, measured),
-        "identified_by": [" ".join(CLOSING[k] for k in columns) for columns in used],
+        "identified_by": _texts([" ".join(CLOSING[k] for k in held) for held in _SETS], used.number),
         "fabric_thickness_mm": closed.fabric,
     }
     # the weft starts in the middle of its low float, the warp in that of its high one
@@ -329,7 +394,7 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
         z_start, z_end = heights[d]
         sign = 1.0 if d == "weft" else -1.0
         p_start, p_end = sign * slope[d] / (2 * u_start), sign * slope[d] / (2 * u_end)
-        low, high = _floats(table, d)
+        low, high = floats[d]
         start = low if d == "weft" else high
         crossed = DIRECTIONS[1 - DIRECTIONS.index(d)]
         off_start, off_end = (
@@ -355,9 +420,15 @@ def _solved(table, measured, transitions, used, closed, other, two) -> SolvedTab
             columns |= {along_column: x, height_column: z}
         columns |= _section_columns(measured, arcs, d, thickness[d])
     for d, b in (("weft", other.b1), ("warp", other.b2)):
-        columns[f"other_{d}_thickness_mm"] = ["" if not twice else value for twice, value in zip(two, b.tolist())]
-    lists = {name: values.tolist() if isinstance(values, np.ndarray) else values for name, values in columns.items()}
-    return SolvedTable(lists, _comparisons(measured, used, lists))
+        others: list = [""] * len(table)
+        for at in np.flatnonzero(two).tolist():
+            others[at] = float(b[at])
+        columns[f"other_{d}_thickness_mm"] = others
+    return columns
+
+
+def _texts(texts: Sequence[str], number: np.ndarray) -> list[str]:
+    return [texts[at] for at in number.tolist()]
 
 
 def _parameters(table: Family, measured: _Measured) -> np.ndarray:
@@ -416,22 +487,6 @@ def _is_used(used, column: int, measured: _Measured, alike: np.ndarray) -> np.nd
 
     In a balanced row the weft's crimp is the warp's too where both float ``alike``.
     """
-    return np.array(
-        [
-            column in columns or (both and columns == (0,) and column == 1)
-            for columns, both in zip(used, measured.balanced & alike)
-        ],
-        dtype=bool,
-    )
-
-
-def _comparisons(measured, used, columns) -> tuple[tuple[tuple[str, float, float], ...], ...]:
-    beyond = ~np.isnan(measured.closing)
-    for at, identified in enumerate(used):
-        beyond[list(identified), at] = False
-    return tuple(
-        tuple(
-            (CLOSING[k], float(measured.closing[k, at]), columns[CLOSING[k]][at]) for k in np.flatnonzero(beyond[:, at])
-        )
-        for at in range(len(used))
+    return used.where(lambda held: column in held) | (
+        (column == 1) & used.where(lambda held: held == (0,)) & measured.balanced & alike
     )

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import json
-import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .errors import InputError
 from .identification import identify
 from .scatter import propagate
-from .solved import read_solved
+from .solved import SolvedFabric, SolvedTable, read_solved
 from .staging import staged
 from .sweeps import contact_patches
 from .tables import Family, read_families
 
-_YARN_DATA = ("weft_linear_density_tex", "warp_linear_density_tex", "fibre_density_g_cm3")
+if TYPE_CHECKING:
+    import numpy as np
+
+    from .cad import Consistency
+    from .meshing import Mesh, MeshOptions
 
 
 @dataclass
@@ -59,6 +63,89 @@ def find_row(folder: str | Path, name: str) -> tuple[Family, tuple[InputError, .
     raise InputError(f"{folder}: no row is called {name!r}{hint} ('fabric-cad list' shows them all)")
 
 
+@dataclass(frozen=True, eq=False)
+class Made:
+    """A row's cell up to its STEP file, measured: what :func:`make_step` hands on.
+
+    ``std`` holds the standard deviations of the columns of ``table``, None where the row gives none.
+    """
+
+    row: Family
+    table: SolvedTable
+    std: dict[str, float] | None
+    fabric: SolvedFabric
+    step: Path
+    consistency: Consistency
+
+
+@dataclass(frozen=True, eq=False)
+class Meshed:
+    """The mesh of a cell as read from its file, its scaled Jacobians (elements,) and what the yarns' edges allow."""
+
+    mesh: Mesh
+    quality: np.ndarray
+    allowed: float
+
+
+def make_step(row: Family, folder: Path, stages: Stages) -> Made:
+    """Identify a table of one row, write ``solved.csv`` and the STEP to a folder, and measure the STEP."""
+    (name,) = row.names
+    with stages("identify"):
+        table = identify(row)
+        std = propagate(row, table).row(0) if row.scattered[0] else None
+        table.write(folder / "solved.csv")
+        fabric = read_solved(folder / "solved.csv")
+    with stages("load CadQuery"):
+        from .cad import inspect_cell, read_step
+        from .masters import build_cell
+    step = folder / f"{name}.step"
+    with stages("solids"):
+        cell = build_cell(fabric)
+    with stages("write STEP"):
+        cell.write_step(step)
+    with stages("inspect STEP"):
+        consistency = inspect_cell(read_step(step), contact_patches(fabric))
+    return Made(row, table, std, fabric, step, consistency)
+
+
+def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
+    """Mesh the STEP into the ``.msh`` beside it, and measure that."""
+    msh = made.step.with_suffix(".msh")
+    with stages("mesh"):
+        from .meshing.mesher import mesh_cell, read_mesh
+
+        mesh_cell(made.step, made.fabric, options, msh)
+        mesh = read_mesh(msh)
+    with stages("quality"):
+        from .edges import allowed_scaled_jacobian
+        from .views import scaled_jacobians
+
+        return Meshed(mesh, scaled_jacobians(mesh), allowed_scaled_jacobian(made.fabric))
+
+
+def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> dict:
+    """The report of what was made. Raises :class:`BuildError` where it shows a cell that is not consistent."""
+    from .report import cell_report, check_report, yarn_data
+
+    report = cell_report(
+        made.fabric,
+        made.table.row(made.fabric.name),
+        made.table.comparisons[0],
+        made.consistency,
+        meshed,
+        yarn_data(made.row, 0),
+        {key: round(value, 4) for key, value in stages.seconds.items()},
+        made.std,
+    )
+    check_report(report)
+    return report
+
+
+def write_report(report: dict, folder: Path) -> None:
+    """Write ``report.json``."""
+    (folder / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+
+
 def make_cell(
     row: Family,
     out: str | Path,
@@ -72,64 +159,24 @@ def make_cell(
     :func:`fabric_cad.meshing.mesh_options`. Raises :class:`FabricCadError`; the folder then
     is as it was.
     """
+    from .meshing.options import mesh_options
+
     stages = stages or Stages()
     (name,) = row.names
-    with stages("identify"):
-        table = identify(row)
-        std = propagate(row, table).row(0) if row.scattered[0] else None
+    options = mesh_options(identify(row)[name], **(mesh or {}))
     with staged(Path(out) / name) as folder:
-        path = {kind: folder / f"{name}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")}
-        table.write(folder / "solved.csv")
-        fabric = read_solved(folder / "solved.csv")
-        from .meshing.options import mesh_options
-
-        options = mesh_options(fabric, **(mesh or {}))
-        with stages("load CadQuery"):
-            from .cad import inspect_cell, read_step
-            from .masters import build_cell
-        with stages("solids"):
-            cell = build_cell(fabric)
-        with stages("write STEP"):
-            cell.write_step(path["step"])
-        with stages("inspect STEP"):
-            consistency = inspect_cell(read_step(path["step"]), contact_patches(fabric))
-        with stages("mesh"):
-            from .meshing.mesher import mesh_cell, read_mesh
-
-            mesh_cell(path["step"], fabric, options, path["msh"])
-            cell_mesh = read_mesh(path["msh"])
-        with stages("quality"):
-            from .edges import allowed_scaled_jacobian
-            from .views import draw_cell, scaled_jacobians, write_vtu
-
-            quality = scaled_jacobians(cell_mesh)
-            allowed = allowed_scaled_jacobian(fabric)
+        made = make_step(row, folder, stages)
+        meshed = make_mesh(made, options, stages)
         with stages("write deck"):
             from .decks.cell import write_deck
 
-            write_deck(cell_mesh, path["inp"], f"elementary cell of {name}", dialect)
-        with stages("write vtu"):
-            write_vtu(cell_mesh, quality, path["vtu"])
-        with stages("picture"):
-            draw_cell(cell_mesh, path["png"])
-        from .report import cell_report, check_report
+            write_deck(meshed.mesh, folder / f"{name}.inp", f"elementary cell of {name}", dialect)
+        from .views import draw_cell, write_vtu
 
-        measured = {key: float(row.measured[key][0]) for key in _YARN_DATA}
-        yarn_data = {key: None if math.isnan(value) else value for key, value in measured.items()}
-        if row.balanced[0]:
-            yarn_data["warp_linear_density_tex"] = yarn_data["weft_linear_density_tex"]
-        report = cell_report(
-            fabric,
-            table.row(name),
-            table.comparisons[0],
-            consistency,
-            cell_mesh,
-            quality,
-            allowed,
-            yarn_data,
-            {key: round(value, 4) for key, value in stages.seconds.items()},
-            std,
-        )
-        check_report(report)
-        (folder / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+        with stages("write vtu"):
+            write_vtu(meshed.mesh, meshed.quality, folder / f"{name}.vtu")
+        with stages("picture"):
+            draw_cell(meshed.mesh, folder / f"{name}.png")
+        report = checked_report(made, meshed, stages)
+        write_report(report, folder)
     return report

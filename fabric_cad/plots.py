@@ -298,3 +298,36 @@ def _shades(count: int) -> list[tuple[float, ...]]:
     from matplotlib import colormaps
 
     return [tuple(colour) for colour in colormaps["viridis"](np.linspace(0.0, 0.85, count))]
+
+
+_MEASURES = (
+    ("first_order", "first order", COLOURS["weft"]),
+    ("total", "total", COLOURS["warp"]),
+    ("elasticity", "elasticity", COLOURS["weft"]),
+    ("spearman", "rank correlation", COLOURS["weft"]),
+    ("figure_value", "value", COLOURS["weft"]),
+)
+
+
+def plot_sensitivity(rows: list[dict], axes) -> None:
+    """Bars of one figure's sensitivities, as :func:`fabric_cad.study.sensitivity.sensitivities` gives them.
+
+    A bar a factor and measure, 95 % intervals as lines where there are any.
+    """
+    drawn = [each for each in _MEASURES if any(each[0] in row for row in rows)]
+    height = 0.8 / len(drawn)
+    labels = [" ".join(str(row[key]) for key in ("factor", "value") if key in row) for row in rows]
+    for number, (key, label, colour) in enumerate(drawn):
+        places = [at + (number - (len(drawn) - 1) / 2) * height for at in range(len(rows))]
+        values = [row.get(key, np.nan) for row in rows]
+        axes.barh(places, values, height=0.9 * height, color=colour, label=label)
+        for place, row in zip(places, rows):
+            if f"{key}_low" in row:
+                axes.plot([row[f"{key}_low"], row[f"{key}_high"]], [place, place], color="black", linewidth=1)
+    axes.set_yticks(range(len(rows)), labels)
+    axes.invert_yaxis()
+    axes.axvline(0.0, color="grey", linewidth=0.8)
+    if len(drawn) > 1:
+        axes.legend(fontsize="small")
+    else:
+        axes.set_xlabel(drawn[0][1])

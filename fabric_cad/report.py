@@ -10,6 +10,7 @@ import numpy as np
 from .errors import BuildError
 from .meshing.mesh import Mesh
 from .solved import Direction, SolvedFabric, point_columns
+from .tables import Family
 from .weaves import Weave
 
 COINCIDENT = 1e-9
@@ -60,9 +61,7 @@ def cell_report(
     row: Mapping[str, object],
     comparisons,
     consistency,
-    mesh: Mesh,
-    quality: np.ndarray,
-    allowed_quality: float,
+    meshed,
     yarn_data: Mapping[str, float | None],
     seconds: Mapping[str, float],
     std: Mapping[str, float] | None = None,
@@ -70,11 +69,11 @@ def cell_report(
     """The content of ``report.json``; lengths mm.
 
     ``consistency`` is what :func:`fabric_cad.cad.inspect_cell` measured on the STEP,
-    ``mesh`` and ``quality`` come from the mesh file, ``yarn_data`` holds
+    ``meshed`` (None: no mesh was made) what :func:`fabric_cad.pipeline.make_mesh` read from the mesh file,
+    ``yarn_data`` holds
     ``weft_linear_density_tex``, ``warp_linear_density_tex`` and ``fibre_density_g_cm3``,
     ``std`` the standard deviations of the columns of ``row`` where its measurements have any.
     """
-    contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.period)
     identified = {name: _identified(name, fabric.directions[name]) for name in ("weft", "warp")}
     identified["fabric_thickness_mm"] = fabric.fabric_thickness
     if std is not None:
@@ -112,19 +111,36 @@ def cell_report(
             "thickness_mm": consistency.thickness,
         },
         "volumes": _volumes(fabric, consistency, yarn_data),
-        "mesh": {
-            "nodes": len(mesh.points),
-            "hexahedra": len(mesh.hexahedra),
-            "other_elements": mesh.other_elements,
-            "min_scaled_jacobian": float(quality.min()),
-            "median_scaled_jacobian": float(np.median(quality)),
-            "scaled_jacobian_edges_allow": allowed_quality,
-            "contact_nodes": contact.nodes,
-            "coincident_contact_nodes": contact.paired,
-            "end_nodes": ends.nodes,
-            "matching_end_nodes": ends.paired,
-        },
+        **({} if meshed is None else {"mesh": _mesh(fabric, meshed)}),
         "seconds": dict(seconds),
+    }
+
+
+def yarn_data(table: Family, at: int) -> dict[str, float | None]:
+    """Linear densities and fibre density of a row, None where not given; a balanced row's warp has its weft's."""
+    values = {name: float(table.measured[name][at]) for name in _YARN_DATA}
+    if table.balanced[at]:
+        values["warp_linear_density_tex"] = values["weft_linear_density_tex"]
+    return {name: None if np.isnan(value) else value for name, value in values.items()}
+
+
+_YARN_DATA = ("weft_linear_density_tex", "warp_linear_density_tex", "fibre_density_g_cm3")
+
+
+def _mesh(fabric: SolvedFabric, meshed) -> dict:
+    mesh, quality = meshed.mesh, meshed.quality
+    contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.period)
+    return {
+        "nodes": len(mesh.points),
+        "hexahedra": len(mesh.hexahedra),
+        "other_elements": mesh.other_elements,
+        "min_scaled_jacobian": float(quality.min()),
+        "median_scaled_jacobian": float(np.median(quality)),
+        "scaled_jacobian_edges_allow": meshed.allowed,
+        "contact_nodes": contact.nodes,
+        "coincident_contact_nodes": contact.paired,
+        "end_nodes": ends.nodes,
+        "matching_end_nodes": ends.paired,
     }
 
 
@@ -171,11 +187,19 @@ def _volumes(fabric: SolvedFabric, consistency, yarn_data: Mapping[str, float | 
 
 def check_report(report: dict) -> None:
     """Raise :class:`BuildError` where a report shows a cell that is not consistent."""
-    consistency, mesh = report["consistency"], report["mesh"]
+    consistency, mesh = report["consistency"], report.get("mesh")
     wrong = []
     for key in ("max_penetration_mm", "max_contact_gap_mm"):
         if not consistency[key] <= COINCIDENT:
             wrong.append(f"{key} is {consistency[key]:.3g}, above {COINCIDENT:g}")
+    if mesh is not None:
+        wrong += _wrong_mesh(mesh)
+    if wrong:
+        raise BuildError(f"{report['row']}: the cell is not consistent: " + "; ".join(wrong))
+
+
+def _wrong_mesh(mesh: dict) -> list[str]:
+    wrong = []
     if mesh["other_elements"]:
         wrong.append(f"{mesh['other_elements']} elements are no hexahedra")
     if not mesh["min_scaled_jacobian"] > 0:
@@ -183,8 +207,7 @@ def check_report(report: dict) -> None:
     for nodes, paired in (("contact_nodes", "coincident_contact_nodes"), ("end_nodes", "matching_end_nodes")):
         if mesh[nodes] != mesh[paired]:
             wrong.append(f"only {mesh[paired]} of {mesh[nodes]} {nodes} are paired")
-    if wrong:
-        raise BuildError(f"{report['row']}: the cell is not consistent: " + "; ".join(wrong))
+    return wrong
 
 
 def summary(report: dict) -> str:

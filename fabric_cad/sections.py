@@ -20,7 +20,8 @@ the crossed yarn goes straight, so that the two only move apart.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -71,7 +72,7 @@ class Frame:
     thickness: float
     form: str
     lateral_height: float
-    splits: dict[str, tuple[float, float]]
+    splits: dict[str, tuple[float, float]] = field(hash=False)
 
     def has_laterals(self, side: str) -> bool:
         """True where the ``bottom`` or ``top`` strip ends before the section's edges."""
@@ -198,13 +199,15 @@ def round_between(thickness, width, half_chord):
     return (1 - half**2) / (4 * half * half_chord), half
 
 
+@lru_cache(maxsize=256)
 def contact_section(
     frame: Frame, contact: ContactSide, turns: tuple[bool, bool], free: FreeSide, below: bool
 ) -> Section:
     """Section in a crossing: contact profile on one side, free parabola on the other.
 
     ``turns`` says whether the crossed yarn changes sides just left and right of this one,
-    ``below`` whether the contact is on the bottom. (Fig. 9, 17)
+    ``below`` whether the contact is on the bottom. The same arguments give the same section
+    again: the yarns of a cell share theirs. (Fig. 9, 17)
     """
     if not below:
         flipped = replace(frame, splits={"bottom": frame.splits["top"], "top": frame.splits["bottom"]})
@@ -232,6 +235,7 @@ def contact_section(
     )
 
 
+@lru_cache(maxsize=256)
 def free_section(frame: Frame, between: FreeSide) -> Section:
     """Section between crossings, where no yarn touches: symmetric, edges at mid-height."""
     floor, ceiling = -frame.thickness / 2, frame.thickness / 2

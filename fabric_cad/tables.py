@@ -43,7 +43,7 @@ MEASURED = (
 
 _STD = tuple(f"{name}_std" for name in MEASURED)
 
-_OTHER_UNITS = {
+OTHER_UNITS = {
     f"{direction}_{written}": (f"{direction}_{kept}", factor)
     for direction in DIRECTIONS
     for written, kept, factor in (
@@ -52,8 +52,10 @@ _OTHER_UNITS = {
         ("crimp_percent", "crimp", 0.01),
     )
 }
-_OTHER_UNITS |= {f"{written}_std": (f"{kept}_std", factor) for written, (kept, factor) in _OTHER_UNITS.items()}
-_STD_WRITTEN = {*_STD, *(written for written in _OTHER_UNITS if written.endswith("_std"))}
+OTHER_UNITS |= {f"{written}_std": (f"{kept}_std", factor) for written, (kept, factor) in OTHER_UNITS.items()}
+"""Columns in other units: the column a quantity is kept in, and the factor to its unit."""
+
+_STD_WRITTEN = {*_STD, *(written for written in OTHER_UNITS if written.endswith("_std"))}
 _MAY_BE_ZERO = {name for name in MEASURED if "_offset_" in name} | _STD_WRITTEN
 
 TEXTS = ("name", "section", "thicker", "source", "notes")
@@ -264,7 +266,7 @@ class _TableReader:
     def check_header(self, line: int, header: list[str]) -> None:
         while header and not header[-1]:
             header.pop()
-        known = [*TEXTS, *self.whole, *MEASURED, *_STD, *_OTHER_UNITS]
+        known = [*TEXTS, *self.whole, *MEASURED, *_STD, *OTHER_UNITS]
         for column in header:
             if column in known:
                 if header.count(column) > 1:
@@ -279,7 +281,7 @@ class _TableReader:
                 self.wrong("this column is missing", line, column)
         for quantity in ("density_per_mm", "width_mm"):
             column = f"weft_{quantity}"
-            written = [column, *(other for other, (kept, _) in _OTHER_UNITS.items() if kept == column)]
+            written = [column, *(other for other, (kept, _) in OTHER_UNITS.items() if kept == column)]
             if not any(name in header for name in written):
                 self.wrong("this column is missing", line, column)
 
@@ -304,7 +306,7 @@ class _TableReader:
             elif column in self.whole:
                 row[column] = self.whole_number(text, line, column, name)
             elif text and column not in TEXTS:
-                kept, factor = _OTHER_UNITS.get(column, (column, 1.0))
+                kept, factor = OTHER_UNITS.get(column, (column, 1.0))
                 if not math.isnan(row[kept]):
                     self.wrong("this quantity is given twice, in two units", line, column, name)
                 row[kept] = self.number(text, line, column, name) * factor
@@ -402,15 +404,15 @@ class _TableReader:
 
     def check_scatter(self, given: list[str], filled: set[str], line: int, name: str) -> None:
         """A standard deviation belongs to a measured value; ``given`` are the columns that hold one."""
-        filled = {_OTHER_UNITS.get(column, (column, 1.0))[0] for column in filled}
+        filled = {OTHER_UNITS.get(column, (column, 1.0))[0] for column in filled}
         for column in given:
-            if _OTHER_UNITS.get(column, (column, 1.0))[0].removesuffix("_std") not in filled:
+            if OTHER_UNITS.get(column, (column, 1.0))[0].removesuffix("_std") not in filled:
                 message = f"a standard deviation without its value; {column.removesuffix('_std')} is empty"
                 self.wrong(message, line, column, name)
 
     def check_geometry(self, row: dict, filled: set[str], line: int, name: str) -> None:
         """Bounds between cells of one row that need no model; ``filled`` names its columns with a text."""
-        filled = {_OTHER_UNITS.get(column, (column, 1.0))[0] for column in filled}
+        filled = {OTHER_UNITS.get(column, (column, 1.0))[0] for column in filled}
         balanced = not any(f"warp_{quantity}" in filled for quantity in _PER_DIRECTION)
         for direction in ("weft",) if balanced else DIRECTIONS:
             for quantity in ("density_per_mm", "width_mm"):

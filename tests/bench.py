@@ -1,7 +1,9 @@
-"""Times and memory of what users wait for, in one run and as one table.
+"""Times and memory of what users wait for, in one run, as one table and as JSON.
 
-Every figure is of a whole process as the operating system accounts for it, beside what was
-promised for two cores and, where there is one, a floor measured in the same run.
+Every figure is of a whole process as the operating system accounts for it, or of a stage of one,
+beside what was promised for two cores and, where there is one, a floor measured in the same run:
+bare imports, bare gmsh on a block of as many hexahedra, bare OCCT on the same shape. A figure is
+one entry of :data:`FIGURES`.
 """
 
 from __future__ import annotations
@@ -11,27 +13,36 @@ import csv
 import json
 import os
 import statistics
+import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+RESULTS = ROOT / "build" / "bench"
 PYTHON = sys.executable
 FABRIC_CAD = [PYTHON, "-m", "fabric_cad"]
+IMPORTS = "floor: import cadquery, gmsh, pyvista"
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One line of the table: medians over ``runs``; seconds, MB."""
+    """One line of the table: medians over ``runs``; s, MB; ``floor`` names the figure it cannot be below."""
 
     what: str
     seconds: float
-    megabytes: float
-    runs: int
+    megabytes: float | None = None
+    runs: int = 1
+    size: str = ""
+    floor: str = ""
     promised: str = ""
-    note: str = ""
+    stages: dict[str, float] = field(default_factory=dict)
+
+
+_SILENT = [(os.POSIX_SPAWN_OPEN, fd, os.devnull, os.O_WRONLY, 0) for fd in (1, 2)]
 
 
 def measure(command: list[str], runs: int) -> tuple[float, float]:
@@ -48,9 +59,6 @@ def measure(command: list[str], runs: int) -> tuple[float, float]:
     return statistics.median(seconds), statistics.median(memory)
 
 
-_SILENT = [(os.POSIX_SPAWN_OPEN, fd, os.devnull, os.O_WRONLY, 0) for fd in (1, 2)]
-
-
 def write_table(path: Path, columns: list[str], rows) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with open(path, "w", newline="", encoding="utf-8") as file:
@@ -60,7 +68,7 @@ def write_table(path: Path, columns: list[str], rows) -> None:
 
 
 def prepare(folder: Path) -> None:
-    """Family tables the shipped ones do not have: a satin of 16 harnesses, a table of 10 000 rows."""
+    """Family tables the shipped ones do not have: a satin of 16 harnesses, tables of 10 000 rows."""
     write_table(
         folder / "families16" / "satin.csv",
         ["name", "harness", "step", "weft_density_per_mm", "weft_width_mm", "weft_crimp"],
@@ -92,61 +100,189 @@ def prepare(folder: Path) -> None:
     write_table(folder / "families10000g" / "twill.csv", [*columns, *general, "section"], general_rows)
 
 
-def figures(folder: Path, runs: int):
-    """Every figure, one after another; stage times go to the notes."""
-    out = folder / "build"
+@dataclass(frozen=True)
+class Bench:
+    """Where and how often to measure."""
 
-    def take(what, command, promised="", note="", repeat=runs):
-        seconds, memory = measure(command, repeat)
-        return Figure(what, seconds, memory, repeat, promised, note)
+    folder: Path
+    runs: int
 
-    def cell(row, promised, *options, families=ROOT / "families", repeat=runs):
-        command = [*FABRIC_CAD, "cell", row, "--families", str(families), "--out", str(out), *options]
-        figure = take(f"cell {' '.join([row, *options])}", command, promised, repeat=repeat)
-        report = json.loads((out / row / "report.json").read_text())
-        stages = ", ".join(f"{name} {seconds:.2f}" for name, seconds in report["seconds"].items())
-        size = (out / row / f"{row}.step").stat().st_size / 1e6
-        note = f"{report['mesh']['hexahedra']} hexahedra, STEP {size:.2f} MB; {stages}"
-        return Figure(**(asdict(figure) | {"note": note}))
+    def command(self, what: str, command: list[str], promised: str = "", floor: str = "", runs: int = 0) -> Figure:
+        """A whole process."""
+        seconds, memory = measure(command, runs or self.runs)
+        return Figure(what, seconds, memory, runs or self.runs, floor=floor, promised=promised)
 
-    yield take("floor: python", [PYTHON, "-c", ""])
-    yield take("floor: import cadquery, gmsh, pyvista", [PYTHON, "-c", "import cadquery, gmsh, pyvista"])
-    yield take("import fabric_cad", [PYTHON, "-c", "import fabric_cad"], "0.3 s")
-    yield take("list", [*FABRIC_CAD, "list", "--families", str(ROOT / "families")], "0.5 s")
-    solve = [*FABRIC_CAD, "solve", "-q", "--out", str(out), "--families"]
-    yield take("solve, 10 000 rows", [*solve, str(folder / "families10000")], "2 s")
-    yield take("solve, 10 000 general rows", [*solve, str(folder / "families10000g")], "as fast")
-    yield cell("twill32", "8 s, 1000 MB")
-    yield cell("satin8", "15 s")
-    yield cell("satin16", "4.5 x satin8", families=folder / "families16", repeat=1)
-    million = ("--across", "36", "--through", "8", "--gap", "44")
-    yield cell("twill32", "60 s, 6000 MB", *million, repeat=1)
+    def solve(self, what: str, families: str, promised: str) -> Figure:
+        folders = ["--out", str(self.folder / "build"), "--families", str(self.folder / families)]
+        return self.command(what, [*FABRIC_CAD, "solve", "-q", *folders], promised)
+
+    def cell(self, row: str, promised: str, *options: str, families: Path = ROOT / "families", runs: int = 0) -> Figure:
+        """All files of a cell, with the times of its stages."""
+        folders = ["--families", str(families), "--out", str(self.folder / "build")]
+        what = f"cell {' '.join([row, *options])}"
+        figure = self.command(what, [*FABRIC_CAD, "cell", row, *folders, *options], promised, IMPORTS, runs)
+        report = json.loads((self.folder / "build" / row / "report.json").read_text())
+        megabytes = (self.folder / "build" / row / f"{row}.step").stat().st_size / 1e6
+        size = f"{report['mesh']['hexahedra']} hexahedra, STEP {megabytes:.2f} MB"
+        return Figure(**(asdict(figure) | {"size": size, "stages": report["seconds"]}))
+
+    def floors(self, row: str) -> list[Figure]:
+        """Two stages of a cell made before, each after its floor."""
+        made = self.folder / "build" / row
+        report, figures = json.loads((made / "report.json").read_text()), []
+        count = str(report["mesh"]["hexahedra"])
+        for stage, name, arguments in (
+            ("mesh", "gmsh alone, a block of as many hexahedra", ["block", count, str(self.folder / "block.msh")]),
+            ("write STEP", "OCCT alone", ["step", str(made / f"{row}.step"), str(self.folder / "bare.step")]),
+        ):
+            floor = f"floor: {stage} of {count} hexahedra: {name}"
+            figures.append(
+                Figure(floor, statistics.median(self.printed("floors.py", *arguments) for _ in range(3)), runs=3)
+            )
+            figures.append(Figure(f"{row}, {stage} of {count} hexahedra", report["seconds"][stage], floor=floor))
+        return figures
+
+    def printed(self, script: str, *arguments: str) -> float:
+        """The number a script of the tests prints."""
+        command = [PYTHON, str(ROOT / "tests" / script), *arguments]
+        return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1])
+
+    def identify(self, fabrics: int, promised: str) -> list[Figure]:
+        """Fabrics of a study identified: the identification in one process, and the whole command."""
+        code = (
+            "import sys, time; from fabric_cad.study.definition import read_study\n"
+            "from fabric_cad.study.design import DESIGNS; from fabric_cad.study.rows import study_rows\n"
+            "from fabric_cad.study.figures import identified_figures\n"
+            "from fabric_cad.identification import identify_rows\n"
+            "study = read_study(sys.argv[1], sys.argv[2])\n"
+            "samples = DESIGNS[study.design](study.factors, {}, study.samples, study.seed)\n"
+            "start = time.perf_counter(); table, refused = study_rows(study.base, samples)\n"
+            "identified_figures(table, identify_rows(table)); print(time.perf_counter() - start)"
+        )
+        file = self.study("many", "plain_measured", "identify", fabrics, '"normal"', '"normal"')
+        arguments = [str(file), str(ROOT / "families")]
+        alone = [
+            float(
+                subprocess.run(
+                    [PYTHON, "-c", code, *arguments], check=True, capture_output=True, text=True
+                ).stdout.split()[-1]
+            )
+            for _ in range(self.runs)
+        ]
+        whole = self.command(f"study, {fabrics} fabrics, with table and picture", self.run(file), runs=1)
+        return [
+            Figure(f"{fabrics} fabrics identified", statistics.median(alone), runs=self.runs, promised=promised),
+            whole,
+        ]
+
+    def study(self, name: str, base: str, depth: str, units: int, width: str, crimp: str) -> Path:
+        file = self.folder / f"{name}.toml"
+        file.write_text(
+            f'base = "{base}"\ndepth = "{depth}"\ndesign = "latin-hypercube"\nsamples = {units}\n'
+            f"[factors]\nweft_width_mm = {width}\nweft_crimp = {crimp}\n"
+        )
+        return file
+
+    def run(self, file: Path) -> list[str]:
+        folders = ["--families", str(ROOT / "families"), "--out", str(self.folder / "build")]
+        return [*FABRIC_CAD, "study", str(file), "-q", *folders, "--workers", "2"]
+
+    def cells(self, count: int, promised: str) -> list[Figure]:
+        """A study of twills 2*2 with mesh over two workers: the whole, the first and one more fabric of a worker."""
+        file = self.study("cells", "twill22", "mesh", count, "{ from = 2.1, to = 2.7 }", "{ from = 0.003, to = 0.005 }")
+        whole = self.command(f"study, {count} twill 2*2 with mesh", self.run(file), runs=1)
+        with open(self.folder / "build" / "cells" / "costs.csv", newline="") as costs:
+            rows = [{name: float(cell) for name, cell in row.items()} for row in csv.DictReader(costs) if row["unit"]]
+        memory = max(row["process_megabytes"] for row in rows)
+        first, more = [row for row in rows if row["load CadQuery"] > 0.1], []
+        more = [row for row in rows if row not in first]
+        stages = {
+            name: round(statistics.median(row[name] for row in more), 4) for name in more[0] if name not in _NO_STAGE
+        }
+        return [
+            Figure(f"{whole.what}, a cell", whole.seconds / count, memory, size=f"{count} cells", promised=promised),
+            Figure("  the first of a worker", statistics.median(row["unit"] for row in first)),
+            Figure("  one more", statistics.median(row["unit"] for row in more), stages=stages),
+            Figure("  one more, processor time", statistics.median(row["processor"] for row in more)),
+            Figure(whole.what, whole.seconds, memory, promised="below 1500 MB a worker"),
+        ]
+
+
+_NO_STAGE = ("unit", "processor", "process_megabytes", "load CadQuery")
+_MILLION = ("--across", "36", "--through", "8", "--gap", "44")
+
+FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
+    lambda b: b.command("floor: python", [PYTHON, "-c", ""]),
+    lambda b: b.command(IMPORTS, [PYTHON, "-c", "import cadquery, gmsh, pyvista"]),
+    lambda b: b.command("import fabric_cad", [PYTHON, "-c", "import fabric_cad"], "0.3 s", "floor: python"),
+    lambda b: b.command("list", [*FABRIC_CAD, "list", "--families", str(ROOT / "families")], "0.5 s", "floor: python"),
+    lambda b: b.solve("solve, 10 000 rows", "families10000", "2 s"),
+    lambda b: b.solve("solve, 10 000 general rows", "families10000g", "as fast"),
+    lambda b: b.identify(100_000, "1 s"),
+    lambda b: b.cell("twill32", "8 s, 1000 MB"),
+    lambda b: b.floors("twill32"),
+    lambda b: b.cell("satin8", "15 s"),
+    lambda b: b.cell("satin16", "4.5 x satin8", families=b.folder / "families16", runs=1),
+    lambda b: b.cell("twill32", "60 s, 6000 MB", *_MILLION, runs=1),
+    lambda b: b.floors("twill32"),
+    lambda b: b.cells(200, "0.7 s"),
+)
+"""What is measured, in this order: add a line for a figure more."""
+
+
+def show(figure: Figure, taken: dict[str, Figure]) -> None:
+    """Print one line of the table, and the stages below it."""
+    floor = taken.get(figure.floor)
+    ratio = f"{figure.seconds / floor.seconds:.2f}" if floor else ""
+    memory = "" if figure.megabytes is None else f"{figure.megabytes:.0f}"
+    print(f"{figure.what:66}{figure.seconds:8.2f}{ratio:>8}{memory:>7}  {figure.size:34}{figure.promised}".rstrip())
+    if figure.stages:
+        print("    " + ", ".join(f"{name} {seconds:.2f}" for name, seconds in figure.stages.items()))
+    sys.stdout.flush()
+
+
+def compare(paths: list[Path]) -> None:
+    """Two runs side by side: seconds, memory, and the second's share of the first's seconds."""
+    one, two = ({each["what"]: each for each in json.loads(path.read_text())} for path in paths)
+    names = [path.stem for path in paths]
+    print(f"{'':66}{names[0]:>22}{names[1]:>22}{'ratio':>8}")
+    for what in dict.fromkeys([*one, *two]):
+        cells = []
+        for run in (one, two):
+            found = run.get(what)
+            memory = f"{found['megabytes']:.0f} MB" if found and found["megabytes"] is not None else ""
+            cells.append(f"{found['seconds']:.2f} s{memory:>9}" if found else "")
+        both = what in one and what in two
+        ratio = f"{two[what]['seconds'] / one[what]['seconds']:.2f}" if both else ""
+        print(f"{what:66}{cells[0]:>22}{cells[1]:>22}{ratio:>8}")
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--json", type=Path, default=ROOT / "build" / "bench.json")
+    parser.add_argument("--json", type=Path, help="default: build/bench/<time>.json")
+    parser.add_argument("--compare", nargs="*", type=Path, metavar="RUN.json", help="two runs; default: the last two")
     settings = parser.parse_args()
-    taken = []
-    print(f"{'what':52}{'s':>8}{'x import':>10}{'MB':>8}  promised")
+    if settings.compare is not None:
+        runs = settings.compare or sorted(RESULTS.glob("*.json"))[-2:]
+        if len(runs) != 2:
+            raise SystemExit(f"two runs are needed, {len(runs)} given or in {RESULTS.relative_to(ROOT)}")
+        return compare(runs)
+    taken: dict[str, Figure] = {}
+    print(f"{'what':66}{'s':>8}{'/floor':>8}{'MB':>7}  {'size':34}promised")
     with tempfile.TemporaryDirectory() as scratch:
-        prepare(Path(scratch))
-        for figure in figures(Path(scratch), settings.runs):
-            taken.append(figure)
-            floor = next((f.seconds for f in taken if "import cadquery" in f.what), None)
-            ratio = f"{figure.seconds / floor:.2f}" if floor else ""
-            print(
-                f"{figure.what:52}{figure.seconds:8.2f}{ratio:>10}{figure.megabytes:8.0f}  {figure.promised}",
-                flush=True,
-            )
-            if figure.note:
-                print(f"    {figure.note}")
-    by_name = {figure.what: figure.seconds for figure in taken}
-    print(f"satin16 / satin8: {by_name['cell satin16'] / by_name['cell satin8']:.2f} (promised 4.5)")
-    settings.json.parent.mkdir(parents=True, exist_ok=True)
-    settings.json.write_text(json.dumps([asdict(figure) for figure in taken], indent=2) + "\n")
-    print(settings.json)
+        bench = Bench(Path(scratch), settings.runs)
+        prepare(bench.folder)
+        for figure in FIGURES:
+            found = figure(bench)
+            for each in found if isinstance(found, list) else [found]:
+                taken[each.what] = each
+                show(each, taken)
+    print(f"satin16 / satin8: {taken['cell satin16'].seconds / taken['cell satin8'].seconds:.2f} (promised 4.5)")
+    path = settings.json or RESULTS / f"{time.strftime('%Y-%m-%dT%H-%M-%S')}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps([asdict(figure) for figure in taken.values()], indent=2) + "\n")
+    print(path)
 
 
 if __name__ == "__main__":

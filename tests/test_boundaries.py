@@ -16,6 +16,9 @@ DOORS = {
     "gmsh": {"meshing/mesher.py"},
     "pyvista": {"views.py"},
     "vtkmodules": {"views.py"},
+    "dask": {"study/engine.py"},
+    "distributed": {"study/engine.py"},
+    "pyarrow": {"study/table.py"},
 }
 
 
@@ -42,6 +45,10 @@ def test_heavy_packages_stay_behind_their_doors(path):
         (
             "import fabric_cad; fabric_cad.identify; fabric_cad.read_family; fabric_cad.mesh_options",
             ("cadquery", "OCP", "gmsh", "scipy", "pyvista"),
+        ),
+        (
+            "import fabric_cad; fabric_cad.run_study",
+            ("cadquery", "OCP", "gmsh", "scipy", "pyvista", "dask", "distributed", "pyarrow", "matplotlib"),
         ),
         ("from fabric_cad.cli import main; main(['list', '-q'])", ("cadquery", "OCP", "gmsh", "scipy", "pyvista")),
     ],

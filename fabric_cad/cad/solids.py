@@ -28,10 +28,10 @@ def sweep(path: Trajectory, sections: tuple[Section, ...]) -> cq.Solid:
 def solid_of(surface: Skin) -> cq.Solid:
     """The solid bounded by a skin and its two end sections."""
     faces = [_face(patch, surface) for patch in surface.patches]
-    open_shell = _sew(faces)
+    open_shell, rim = _sew(faces)
     along = "x" if surface.direction == "weft" else "y"
-    ends = [_cap(open_shell, along, place) for place in (surface.planes[0].place, surface.planes[-1].place)]
-    shell = _sew([*open_shell.Faces(), *ends])
+    ends = [_cap(rim, along, place) for place in (surface.planes[0].place, surface.planes[-1].place)]
+    shell, _ = _sew([*open_shell.Faces(), *ends])
     solid = cq.Solid.makeSolid(shell) if isinstance(shell, cq.Shell) else None
     if solid is None or not solid.isValid():
         raise BuildError(f"the {surface.direction} at {surface.axis:g} mm does not close to a valid solid")
@@ -64,19 +64,22 @@ def _knots(knots: np.ndarray) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInt
     return values, multiplicities
 
 
-def _sew(faces: list[cq.Face]) -> cq.Shape:
+def _sew(faces: list[cq.Face]) -> tuple[cq.Shape, list[cq.Edge]]:
+    """The faces sewn, and those of its edges that bound one face only, in its order."""
     sewing = BRepBuilderAPI_Sewing(_SEWING_TOLERANCE)
     for face in faces:
         sewing.Add(face.wrapped)
     sewing.Perform()
-    return cq.Shape.cast(sewing.SewedShape())
+    sewn = cq.Shape.cast(sewing.SewedShape())
+    free = {cq.Shape.cast(sewing.FreeEdge(i)) for i in range(1, sewing.NbFreeEdges() + 1)}
+    return sewn, [edge for edge in sewn.Edges() if edge in free]
 
 
-def _cap(shell: cq.Shape, along: str, place: float) -> cq.Face:
-    """The planar end section, from the edges the skin ends in."""
+def _cap(rim: list[cq.Edge], along: str, place: float) -> cq.Face:
+    """The planar end section, from those of the edges the skin ends in that lie there."""
     edges = [
         edge
-        for edge in shell.Edges()
+        for edge in rim
         if all(abs(getattr(point, along) - place) < _SEWING_TOLERANCE for point in (edge.startPoint(), edge.endPoint()))
     ]
     return cq.Face.makeFromWires(cq.Wire.assembleEdges(edges))

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import cadquery as cq
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_LabelSequence
+from OCP.TDocStd import TDocStd_Document
+from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from ..colours import COLOURS
 from ..errors import BuildError
@@ -42,15 +51,37 @@ def read_step(path: str | Path) -> dict[str, cq.Solid]:
 
     Raises :class:`BuildError` where the file does not hold one named solid a yarn.
     """
+    reader = STEPCAFControl_Reader()
+    reader.SetNameMode(True)
+    Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
+    if reader.ReadFile(str(path)) != IFSelect_RetDone:
+        raise BuildError(f"{path}: cannot be read as STEP")
+    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     try:
-        assembly = cq.Assembly.importStep(str(path))
-    except (ValueError, RuntimeError) as error:
-        raise BuildError(f"{path}: cannot be read as STEP: {error}") from error
-    solids = {}
-    for shape, name, _, _ in assembly:
-        found = shape.Solids()
-        key = name.split("/")[-1]
-        if len(found) != 1 or key in solids:
-            raise BuildError(f"{path}: {name} is not one solid of its own name")
-        solids[key] = found[0]
+        if not reader.Transfer(document):
+            raise BuildError(f"{path}: cannot be read as STEP")
+        solids: dict[str, cq.Solid] = {}
+        for name, shape in _parts(document):
+            found = shape.Solids()
+            if len(found) != 1 or name in solids:
+                raise BuildError(f"{path}: {name} is not one solid of its own name")
+            solids[name] = found[0]
+    finally:
+        document.Main().Root().ForgetAllAttributes(True)  # else every file read stays in memory
+    if not solids:
+        raise BuildError(f"{path}: holds no assembly of solids")
     return solids
+
+
+def _parts(document: TDocStd_Document) -> Iterator[tuple[str, cq.Shape]]:
+    """Name and shape, in its place, of every part of the assemblies in a document."""
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    roots = TDF_LabelSequence()
+    shapes.GetFreeShapes(roots)
+    for root in (roots.Value(k) for k in range(1, roots.Length() + 1)):
+        parts = TDF_LabelSequence()
+        shapes.GetComponents_s(root, parts, True)
+        for part in (parts.Value(k) for k in range(1, parts.Length() + 1)):
+            name = TDataStd_Name()
+            named = part.FindAttribute(TDataStd_Name.GetID_s(), name)
+            yield name.Get().ToExtString() if named else "", cq.Shape.cast(shapes.GetShape_s(part))

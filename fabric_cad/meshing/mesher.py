@@ -7,6 +7,7 @@ nodes between the faces, and two layers in a row bound the hexahedra.
 
 from __future__ import annotations
 
+import atexit
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,15 +27,23 @@ _PLACE = 1e-6  # mm, by which a face's nodes are told apart
 
 @contextmanager
 def _session() -> Iterator:
-    """gmsh, initialised for as long as the block runs."""
+    """gmsh with an empty model and its own options; started once a process and ended with it."""
     import gmsh
 
-    gmsh.initialize(["-nopopup"], readConfigFiles=False, interruptible=False)
+    if not gmsh.isInitialized():
+        gmsh.initialize(["-nopopup"], readConfigFiles=False, interruptible=False)
+        atexit.register(_end, gmsh)
     try:
+        gmsh.option.restoreDefaults()
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.AbortOnError", 2)
         yield gmsh
     finally:
+        gmsh.clear()
+
+
+def _end(gmsh) -> None:
+    if gmsh.isInitialized():
         gmsh.finalize()
 
 
@@ -62,13 +71,14 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
     if missing := [plan.yarn.name for plan in plans if plan.yarn.name not in solids]:
         raise BuildError(f"{step}: holds no solid named {', '.join(missing)}")
     faces = {plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name]) for plan in plans}
+    curves = {plan.yarn.name: list(_curves(gmsh, plan, faces[plan.yarn.name])) for plan in plans}
     for plan in plans:
-        _set_transfinite(gmsh, plan, faces[plan.yarn.name])
+        _set_transfinite(gmsh, faces[plan.yarn.name], curves[plan.yarn.name])
     gmsh.option.setNumber("Mesh.MeshOnlyVisible", 1)
     gmsh.model.setVisibility([(2, each[side]) for each in faces.values() for side in ("start", "end")], 0)
     gmsh.model.mesh.generate(1)
     for plan in plans:
-        _space(gmsh, plan, faces[plan.yarn.name])
+        _space(gmsh, curves[plan.yarn.name])
     gmsh.model.mesh.generate(2)
     for plan in plans:
         _fill(gmsh, plan, solids[plan.yarn.name], faces[plan.yarn.name])
@@ -127,8 +137,8 @@ def _curves(gmsh, plan: Plan, faces: dict) -> Iterator[tuple[int, np.ndarray]]:
             yield curve, shares if start[axis] < end[axis] else 1 - shares[::-1]
 
 
-def _set_transfinite(gmsh, plan: Plan, faces: dict) -> None:
-    for curve, shares in _curves(gmsh, plan, faces):
+def _set_transfinite(gmsh, faces: dict, curves: list) -> None:
+    for curve, shares in curves:
         gmsh.model.mesh.setTransfiniteCurve(curve, len(shares))
     for key, face in faces.items():
         if key not in ("start", "end"):
@@ -136,12 +146,12 @@ def _set_transfinite(gmsh, plan: Plan, faces: dict) -> None:
             gmsh.model.mesh.setRecombine(2, face)
 
 
-def _space(gmsh, plan: Plan, faces: dict) -> None:
+def _space(gmsh, curves: list) -> None:
     """Move the nodes of every edge to their shares of its parameter, which runs with x, y or z.
 
     gmsh spaces them by arc length, which differs between the two edges of a yarn.
     """
-    for curve, shares in _curves(gmsh, plan, faces):
+    for curve, shares in curves:
         tags, _, at = gmsh.model.mesh.getNodes(1, curve, returnParametricCoord=True)
         low, high = gmsh.model.getParametrizationBounds(1, curve)
         parameters = low[0] + (high[0] - low[0]) * shares[1:-1]

@@ -45,12 +45,14 @@ class Template:
     quads: np.ndarray
 
 
+@lru_cache(maxsize=256)
 def flat_template(across: int, through: int) -> Template:
     """``across`` x ``through`` quadrilaterals between a section's four corners."""
     outline, bottom, top, left, right = _sides(across, through)
     return _template(outline, [_coons(bottom, top, left, right)])
 
 
+@lru_cache(maxsize=256)
 def lenticular_template(across: int, through: int, near: float = 0.5) -> Template:
     """Quadrilaterals of a section with two pointed edges; ``through`` = 2k is even.
 

@@ -1,0 +1,375 @@
+"""Reading a study from its TOML file; all that is wrong in it is listed at once."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import InputError, Problem
+from ..pipeline import find_row
+from ..tables import MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
+from ..weaves import DIRECTIONS
+from .design import DESIGNS, RANDOM
+from .factors import Factor, Normal, Uniform, Values
+from .rows import CHOICES, base_value, kept_column, weave_cells, weave_fault
+from .units import DEPTHS
+
+_MESH = {"size": float, "across": int, "crossing": int, "through": int, "gap": int}
+_TEXTS = {"section": SECTIONS, "thicker": DIRECTIONS}
+_FACTOR_KEYS = {"uniform": ("from", "to", "steps"), "normal": ("mean", "std")}
+MOST_UNITS = 10_000_000
+"""Most units a study may have."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study as its file defines it; ``base`` is a table of one row.
+
+    ``factors`` maps columns of that table to what varies, ``mesh`` holds keywords of
+    :func:`fabric_cad.meshing.mesh_options`, ``figures`` names the figures whose sensitivity is
+    asked for (none: the usual ones), ``limit_seconds`` is what one unit may take.
+    """
+
+    name: str
+    base: Family
+    factors: Mapping[str, Factor]
+    design: str
+    samples: int
+    seed: int
+    depth: str
+    mesh: Mapping[str, object]
+    figures: tuple[str, ...]
+    limit_seconds: float
+    keep: bool
+
+
+def read_study(path: str | Path, families: str | Path = "families") -> Study:
+    """Read a study and its base row from the family tables of a folder.
+
+    Raises :class:`InputError` with every problem of the file: its place, key, value and bound.
+    """
+    path = Path(path)
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
+    try:
+        text = raw.decode("utf-8-sig")
+        content = tomllib.loads(text)
+    except UnicodeDecodeError as error:
+        raise InputError(Problem("not UTF-8 text", str(path), raw[: error.start].count(b"\n") + 1)) from error
+    except tomllib.TOMLDecodeError as error:
+        found = re.search(r"\(at line (\d+), column \d+\)", str(error))
+        message = f"not TOML: {str(error).split(' (at')[0]}"
+        raise InputError(Problem(message, str(path), int(found[1]) if found else None)) from error
+    return _Reader(path, content, key_lines(text)).read(families)
+
+
+def key_lines(text: str) -> dict[str, int]:
+    """Line number of each key of a TOML text by its dotted name, tables included."""
+    lines: dict[str, int] = {}
+    table = ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := re.match(r"\s*\[+\s*([^\]]+?)\s*\]", line):
+            table = re.sub(r"[\s\"']", "", header[1])
+            lines.setdefault(table, number)
+        elif key := re.match(r"\s*([\w\-.\"']+)\s*=", line):
+            name = re.sub(r"[\"']", "", key[1])
+            lines.setdefault(f"{table}.{name}" if table else name, number)
+    return lines
+
+
+_KEYS = {
+    "base": str,
+    "depth": str,
+    "design": str,
+    "samples": int,
+    "seed": int,
+    "figures": list,
+    "limit_seconds": float,
+    "keep": bool,
+    "factors": dict,
+    "mesh": dict,
+}
+_KINDS = {
+    str: "a text",
+    int: "a whole number",
+    float: "a number",
+    bool: "true or false",
+    list: "a list",
+    dict: "a table",
+}
+
+
+def _is(value: object, kind: type) -> bool:
+    if kind is float:
+        return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, kind) and not (kind is int and isinstance(value, bool))
+
+
+class _Reader:
+    """Reads one study, gathering problems as it goes."""
+
+    def __init__(self, path: Path, content: dict, lines: dict[str, int]) -> None:
+        self.path, self.content, self.lines = path, content, lines
+        self.problems: list[Problem] = []
+
+    def wrong(self, message: str, key: str, shown: str = "") -> None:
+        line = self.lines.get(key)
+        while line is None and "." in key:  # within an inline table: the line of the whole
+            key = key.rpartition(".")[0]
+            line = self.lines.get(key)
+        self.problems.append(Problem(message, str(self.path), line, shown or key))
+
+    def unknown(self, name: str, known, key: str, what: str) -> None:
+        nearest = difflib.get_close_matches(name.lower(), known, n=1, cutoff=0.3)
+        self.wrong(f"unknown {what}{f'; did you mean {nearest[0]}?' if nearest else ''}", key, name)
+
+    def of_kind(self, content: Mapping, keys: Mapping[str, type], prefix: str = "") -> dict:
+        """The values that are of their kind; the others, and unknown keys, are problems."""
+        found = {}
+        for name, value in content.items():
+            if name not in keys:
+                self.unknown(name, keys, prefix + name, "key")
+            elif not _is(value, keys[name]):
+                self.wrong(f"{value!r} is not {_KINDS[keys[name]]}", prefix + name)
+            else:
+                found[name] = value
+        return found
+
+    def read(self, families: str | Path) -> Study:
+        found = self.of_kind(self.content, _KEYS)
+        for key in ("base", "design", "factors"):
+            if key not in self.content:
+                self.wrong("this key is missing", key)
+        if not is_safe_name(self.path.stem):
+            self.wrong(f"{self.path.stem!r} cannot name a folder of results; letters, digits, '_' and '-' only", "")
+        for key, known in (("design", DESIGNS), ("depth", DEPTHS)):
+            if key in found and found[key] not in known:
+                nearest = difflib.get_close_matches(found[key], known, n=1, cutoff=0.3)
+                hint = f"; did you mean {nearest[0]}?" if nearest else ""
+                self.wrong(f"{found.pop(key)!r} is none of {', '.join(known)}{hint}", key)
+        design, depth = found.get("design"), found.get("depth", "identify")
+        self.check_samples(found, design)
+        if "limit_seconds" in found and not found["limit_seconds"] > 0:
+            self.wrong(f"{found['limit_seconds']:g} is not above 0", "limit_seconds")
+        figures = found.get("figures", [])
+        if not all(isinstance(each, str) for each in figures):
+            self.wrong(f"{figures!r} is not a list of texts", "figures")
+        mesh = self.of_kind(found.get("mesh", {}), _MESH, "mesh.")
+        if mesh and depth in ("identify", "cell"):
+            self.wrong(f"has no meaning at depth {depth}", "mesh")
+        base = self.base(found.get("base"), families)
+        if base is not None:
+            self.check_mesh(base, mesh)
+        factors = self.factors(base, found.get("factors", {}), design) if base is not None else {}
+        if base is not None and not self.problems:
+            self.check_size(factors, design, found.get("samples", 0))
+        if self.problems:
+            raise InputError(self.problems)
+        return Study(
+            name=self.path.stem,
+            base=base,
+            factors=factors,
+            design=design,
+            samples=found.get("samples", 0),
+            seed=found.get("seed", 0),
+            depth=depth,
+            mesh=mesh,
+            figures=tuple(figures),
+            limit_seconds=float(found.get("limit_seconds", 600.0)),
+            keep=found.get("keep", False),
+        )
+
+    def check_samples(self, found: dict, design: str | None) -> None:
+        for key, least in (("samples", 1), ("seed", 0)):
+            if key in found and found[key] < least:
+                self.wrong(f"{found[key]} is not at least {least}", key)
+            elif key in found and design is not None and design not in RANDOM:
+                self.wrong(f"has no meaning in a {design} design", key)
+        if design in RANDOM and "samples" not in self.content:
+            self.wrong(f"this key is missing; a {design} design needs the number of samples", "samples")
+        samples = found.get("samples", 1)
+        if design == "sobol" and samples > 0 and samples & (samples - 1):
+            near = 2 ** round(math.log2(samples))
+            self.wrong(f"{samples} is not a power of two, as a Sobol sequence needs; {near} is the nearest", "samples")
+
+    def base(self, name: str | None, families: str | Path) -> Family | None:
+        if name is None:
+            return None
+        try:
+            return find_row(families, name)[0]
+        except InputError as error:
+            for problem in error.problems:
+                if problem.line is None:
+                    self.wrong(str(problem), "base")
+                else:
+                    self.problems.append(problem)
+        return None
+
+    def check_mesh(self, base: Family, mesh: Mapping) -> None:
+        """What the base row cannot be meshed with."""
+        from ..identification import identify
+        from ..meshing.options import mesh_options
+
+        try:
+            fabric = identify(base)[base.names[0]]
+        except InputError:
+            return  # a factor may make it one
+        try:
+            mesh_options(fabric, **mesh)
+        except InputError as error:
+            for problem in error.problems:
+                self.wrong(problem.message, f"mesh.{problem.column}")
+
+    def factors(self, base: Family, content: Mapping, design: str | None) -> dict[str, Factor]:
+        if not content and "factors" in self.content and isinstance(self.content["factors"], dict):
+            self.wrong("is empty; a study needs at least one factor", "factors")
+        weave = WEAVE_COLUMNS[base.family]
+        known = [*weave, *CHOICES, *MEASURED, *(other for other in OTHER_UNITS if not other.endswith("_std"))]
+        factors: dict[str, Factor] = {}
+        kept: dict[str, str] = {}
+        for column, value in content.items():
+            key, shown = f"factors.{column}", f"factor {column}"
+            if column not in known:
+                nearest = difflib.get_close_matches(column.lower(), known, n=1)
+                hint = f"; did you mean {nearest[0]}?" if nearest else ""
+                self.wrong(f"no column of {base.family}.csv that can vary{hint}", key, shown)
+                continue
+            same = kept.setdefault(kept_column(column)[0], column)
+            if same != column:
+                self.wrong(f"the same quantity as factor {same}, in another unit", key, shown)
+            if column.startswith("warp_") and base.balanced[0]:
+                message = (
+                    f"the base row {base.names[0]} is balanced (every warp cell is empty); its weft cells vary both"
+                )
+                self.wrong(message, key, shown)
+                continue
+            if column in (*weave, *CHOICES):
+                factor = self.choice(base, column, value, key, shown)
+            else:
+                factor = self.number(base, column, value, key, shown, design)
+            if factor is not None:
+                factors[column] = factor
+        return factors
+
+    def choice(self, base: Family, column: str, value: object, key: str, shown: str) -> Values | None:
+        """A factor of a weave column or of texts: a list."""
+        if not isinstance(value, list) or not value:
+            self.wrong(f"{value!r} is not a list of values, as this column needs", key, shown)
+            return None
+        known, before = _TEXTS.get(column), len(self.problems)
+        kind = str if known or column == "pattern" else int
+        for each in value:
+            if not _is(each, kind):
+                self.wrong(f"{each!r} is not {_KINDS[kind]}", key, shown)
+            elif known and each not in known:
+                self.wrong(f"{each!r} is none of {', '.join(known)}", key, shown)
+            elif not known and len(value) == 1:
+                fault = weave_fault(base.family, weave_cells(base) | {column: each})
+                if fault:
+                    self.wrong(fault[1], key, shown)
+        return Values(tuple(value)) if len(self.problems) == before else None
+
+    def number(
+        self, base: Family, column: str, value: object, key: str, shown: str, design: str | None
+    ) -> Factor | None:
+        """A factor of a measured column: a list, a range or a distribution."""
+        before = len(self.problems)
+        if isinstance(value, list):
+            if not value:
+                self.wrong("is an empty list", key, shown)
+            for each in value:
+                self.check_bound(base, column, each, key, shown)
+            return Values(tuple(map(float, value))) if len(self.problems) == before else None
+        if isinstance(value, str):
+            value = {"distribution": value}
+        if not isinstance(value, dict):
+            self.wrong(f"{value!r} is not a list, a range like {{ from = 1, to = 2 }} or a distribution", key, shown)
+            return None
+        kind = value.get("distribution", "uniform" if "from" in value or "to" in value else None)
+        if kind not in _FACTOR_KEYS:
+            self.wrong(f"{kind!r} is none of the distributions {', '.join(_FACTOR_KEYS)}", key, shown)
+            return None
+        given = {name: each for name, each in value.items() if name != "distribution"}
+        for name, each in given.items():
+            if name not in _FACTOR_KEYS[kind]:
+                nearest = difflib.get_close_matches(name, _FACTOR_KEYS[kind], n=1, cutoff=0.3)
+                hint = f"; did you mean {nearest[0]}?" if nearest else f"; those are {', '.join(_FACTOR_KEYS[kind])}"
+                self.wrong(f"{name}: unknown key{hint}", f"{key}.{name}", shown)
+            elif not _is(each, int if name == "steps" else float):
+                self.wrong(f"{name}: {each!r} is not {_KINDS[int if name == 'steps' else float]}", key, shown)
+        if len(self.problems) > before:
+            return None
+        factor = self.uniform(base, column, given, key, shown) if kind == "uniform" else None
+        if kind == "normal":
+            factor = self.normal(base, column, given, key, shown)
+        if design == "grid" and len(self.problems) == before and not (given.get("steps") and kind == "uniform"):
+            self.wrong("a grid takes a list, or a range with steps", key, shown)
+        return factor if len(self.problems) == before else None
+
+    def check_bound(self, base: Family, column: str, value: object, key: str, shown: str) -> None:
+        """What the column's bounds say of one value; the rest of its row is the unit's own business."""
+        if not _is(value, float):
+            self.wrong(f"{value!r} is not a number", key, shown)
+        elif value < 0 or (value == 0 and "_offset_" not in column):
+            self.wrong(f"{value:g} is {'below' if '_offset_' in column else 'not above'} 0", key, shown)
+
+    def scatter(self, base: Family, column: str, key: str, shown: str) -> tuple[float, float] | None:
+        """Mean and standard deviation of the base row's measurement, in the unit of the column."""
+        kept, unit = kept_column(column)
+        mean, std = base_value(base, column), float(base.scatter[kept][0]) / unit
+        if math.isnan(mean) or not std > 0:
+            missing = column if math.isnan(mean) else f"{column}_std"
+            self.wrong(f"the base row {base.names[0]} has no {missing}; give it here or there", key, shown)
+            return None
+        return mean, std
+
+    def uniform(self, base: Family, column: str, given: Mapping, key: str, shown: str) -> Uniform | None:
+        if given.get("steps", 2) < 2:
+            self.wrong(f"steps: {given['steps']} is not at least 2", key, shown)
+        if not {"from", "to"} & set(given):
+            found = self.scatter(base, column, key, shown)
+            if found is None:
+                return None
+            half = math.sqrt(3) * found[1]  # the same standard deviation
+            return Uniform(found[0] - half, found[0] + half, given.get("steps"))
+        for end in ("from", "to"):
+            if end not in given:
+                self.wrong(f"{end}: this key is missing", key, shown)
+            else:
+                self.check_bound(base, column, given[end], key, shown)
+        if {"from", "to"} <= set(given) and not given["from"] < given["to"]:
+            self.wrong(f"from {given['from']:g} is not below to {given['to']:g}", key, shown)
+            return None
+        return Uniform(float(given["from"]), float(given["to"]), given.get("steps")) if len(given) > 1 else None
+
+    def normal(self, base: Family, column: str, given: Mapping, key: str, shown: str) -> Normal | None:
+        mean, std = given.get("mean"), given.get("std")
+        if std is not None and not std > 0:
+            self.wrong(f"std: {std:g} is not above 0", key, shown)
+        if mean is not None:
+            self.check_bound(base, column, mean, key, shown)
+        if mean is None and std is not None and not math.isnan(base_value(base, column)):
+            mean = base_value(base, column)
+        if mean is None or std is None:
+            found = self.scatter(base, column, key, shown)
+            if found is None:
+                return None
+            mean, std = mean or found[0], std or found[1]
+        return Normal(float(mean), float(std))
+
+    def check_size(self, factors: Mapping[str, Factor], design: str, samples: int) -> None:
+        from .factors import levels
+
+        if design == "grid":
+            units = math.prod(len(levels(factor)) for factor in factors.values())
+        else:
+            units = samples * (len(factors) + 2 if design == "sobol" else 1)
+        if units > MOST_UNITS:
+            self.wrong(f"{units} units are more than {MOST_UNITS}", "samples" if design in RANDOM else "factors")

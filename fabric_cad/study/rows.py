@@ -1,0 +1,122 @@
+"""Rows of a study: the base row with the factors' values in their columns, as one table of numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import gcd
+
+import numpy as np
+
+from ..bounds import out_of_bounds
+from ..errors import Problem
+from ..patterns import read_pattern, written
+from ..tables import MEASURED, MOST_YARNS, OTHER_UNITS, WEAVE_COLUMNS, Family
+from ..weaves import Weave, pattern_faults, weave_of
+from .design import Samples
+
+CHOICES = ("section", "thicker")
+"""Columns of texts a factor may choose among."""
+
+
+def kept_column(column: str) -> tuple[str, float]:
+    """The column in which a measurement is kept, and the factor from the written unit to its own."""
+    return OTHER_UNITS.get(column, (column, 1.0))
+
+
+def weave_cells(base: Family) -> dict[str, object]:
+    """Weave columns of a table's first row with its values."""
+    weave = base.weaves[0]
+    return {
+        "plain": {},
+        "twill": {"over": weave.over, "under": weave.under},
+        "satin": {"harness": weave.warps, "step": weave.step},
+        "pattern": {"pattern": written(weave.pattern)},
+    }[base.family]
+
+
+def base_value(base: Family, column: str) -> object:
+    """What the base row has in a column, in the unit of that column."""
+    if column in WEAVE_COLUMNS[base.family]:
+        return weave_cells(base)[column]
+    if column in CHOICES:
+        return {"section": base.sections, "thicker": base.thicker}[column][0]
+    kept, unit = kept_column(column)
+    return float(base.measured[kept][0]) / unit
+
+
+def study_rows(base: Family, samples: Samples) -> tuple[Family, dict[int, Problem]]:
+    """A table of one row a unit, named ``<base row>_<unit>``, and what makes a row none, by row number.
+
+    ``base`` is a table of one row; standard deviations are dropped, since scatter is what is sampled.
+    """
+    units = len(samples)
+    (name,) = base.names
+    repeated = base.take([0] * units)
+    measured, sections, thicker = dict(repeated.measured), repeated.sections, repeated.thicker
+    for column, values in samples.values.items():
+        if column == "section":
+            sections = tuple(values.tolist())
+        elif column == "thicker":
+            thicker = tuple(values.tolist())
+        elif column not in WEAVE_COLUMNS[base.family]:
+            kept, unit = kept_column(column)
+            measured[kept] = np.asarray(values, dtype=float) * unit
+    weaves, faults = _weaves(base, samples)
+    width = len(str(max(units - 1, 0)))
+    table = replace(
+        repeated,
+        names=tuple(f"{name}_{unit:0{width}d}" for unit in range(units)),
+        weaves=weaves,
+        measured=measured,
+        scatter={column: np.full(units, np.nan) for column in MEASURED},
+        sections=sections,
+        thicker=thicker,
+    )
+    refused = {at: table.problem(at, column, message) for at, (column, message) in faults.items()}
+    return table, out_of_bounds(table) | refused
+
+
+def _weaves(base: Family, samples: Samples) -> tuple[tuple[Weave, ...], dict[int, tuple[str, str]]]:
+    """The weave of every unit, and (column, message) where its cells make none (the base row's weave stands in)."""
+    columns = [column for column in WEAVE_COLUMNS[base.family] if column in samples.values]
+    if not columns:
+        return base.weaves * len(samples), {}
+    known: dict[tuple, tuple[Weave, tuple[str, str] | None]] = {}
+    weaves, faults = [], {}
+    for at, cells in enumerate(zip(*(samples.values[column].tolist() for column in columns))):
+        if cells not in known:
+            row = weave_cells(base) | dict(zip(columns, cells))
+            fault = weave_fault(base.family, row)
+            if base.family == "pattern" and fault is None:
+                row["pattern"] = read_pattern(row["pattern"])
+            known[cells] = (base.weaves[0] if fault else weave_of(base.family, row)), fault
+        weave, fault = known[cells]
+        weaves.append(weave)
+        if fault:
+            faults[at] = fault
+    return tuple(weaves), faults
+
+
+def weave_fault(family: str, cells: Mapping[str, object]) -> tuple[str, str] | None:
+    """(column, message) of what makes weave cells no weave."""
+    if family == "pattern":
+        try:
+            pattern = read_pattern(str(cells["pattern"]))
+        except ValueError as error:
+            return "pattern", str(error)
+        if len(pattern) < 2 or max(len(pattern), *map(len, pattern)) > MOST_YARNS:
+            return "pattern", f"{len(pattern)} wefts are not between 2 and {MOST_YARNS}"
+        return next((("pattern", fault) for fault in pattern_faults(pattern)), None)
+    for column, value in cells.items():
+        if not 1 <= value <= MOST_YARNS:
+            return column, f"{value} is not between 1 and {MOST_YARNS}"
+    if family == "satin":
+        harness, step = cells["harness"], cells["step"]
+        if harness < 3:
+            return "harness", f"{harness} is not at least 3"
+        if step >= harness:
+            return "step", f"{step} is not below the harness {harness}"
+        if gcd(harness, step) != 1:
+            return "step", f"{step} is not coprime to the harness {harness}"
+    return None

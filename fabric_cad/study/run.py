@@ -1,0 +1,216 @@
+"""A study from its definition to its table, sensitivities and picture."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import FabricCadError, InputError, Problem
+from ..identification import identify_rows
+from ..staging import staged
+from ..tables import Family
+from .definition import Study
+from .design import DESIGNS, Samples
+from .engine import run_tasks
+from .figures import identified_figures
+from .rows import base_value, study_rows
+from .sensitivity import sensitivities
+from .store import Store, held, unit_key
+from .table import write_table, written_digest
+from .units import Outcome, reason_of, run_unit
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is: units of the study, finished, finished in earlier runs, and s since this one began."""
+
+    units: int
+    finished: int
+    before: int
+    seconds: float
+
+    @property
+    def rate(self) -> float:
+        """Units a second of this run."""
+        return (self.finished - self.before) / self.seconds if self.seconds else 0.0
+
+    @property
+    def left(self) -> float:
+        """Seconds left at this rate; infinite before the first unit."""
+        return (self.units - self.finished) / self.rate if self.rate else float("inf")
+
+
+@dataclass(frozen=True)
+class Counts:
+    """What became of a study's units; ``before`` were finished by earlier runs."""
+
+    folder: Path
+    done: int
+    refused: int
+    failed: int
+    before: int
+
+
+def run_study(
+    study: Study,
+    out: str | Path = "build",
+    scheduler: str | None = None,
+    workers: int | None = None,
+    listen: Callable[[Progress], None] = lambda progress: None,
+) -> Counts:
+    """Run a study into the folder ``out/<study>``; units that an earlier run has finished are not run again.
+
+    Leaves ``table.parquet`` and ``table.csv`` (one row a unit: factors, status, reason, figures),
+    ``sensitivity.csv`` and ``sensitivity.png`` where something varies, ``costs.csv`` (times and memory of
+    every unit, not at depth identify) and, where the study keeps them, the units' files in ``cells``.
+    Raises :class:`FabricCadError`; what is finished stays.
+    """
+    folder = Path(out) / study.name
+    with held(folder):
+        digest = _digest(study)
+        written = written_digest(folder)  # and a lack of pyarrow is told before any work
+        samples = DESIGNS[study.design](
+            study.factors, {name: base_value(study.base, name) for name in study.factors}, study.samples, study.seed
+        )
+        table, refused = study_rows(study.base, samples)
+        reasons = {at: reason_of(InputError(problem)) for at, problem in refused.items()}
+        good = np.delete(np.arange(len(table)), list(refused))
+        found = identify_rows(table.take(good) if refused else table)
+        reasons |= {int(good[at]): reason_of(InputError(problem)) for at, problem in found.refused.items()}
+        if study.depth == "identify":
+            part = table.take(good) if refused else table
+            figures = _spread(identified_figures(part, found), good[found.rows], len(table))
+            status, before = ["done"] * len(table), 0
+            for at in reasons:
+                status[at] = "refused"
+            costs, finished = {}, written == digest
+            before = len(table) if finished else 0
+        else:
+            outcomes, before = _run_units(
+                study, folder, table, good[found.rows].tolist(), scheduler, workers, listen, len(reasons)
+            )
+            status = ["refused"] * len(table)
+            for at, outcome in outcomes.items():
+                status[at] = outcome.status
+                if outcome.reason:
+                    reasons[at] = outcome.reason
+            figures = _gathered({at: each.figures for at, each in outcomes.items()}, len(table))
+            costs = _gathered({at: each.costs for at, each in outcomes.items()}, len(table))
+            finished = False
+        if not finished:
+            _write(study, folder, samples, status, reasons, figures, costs, digest)
+        counts = {name: status.count(name) for name in ("done", "refused", "failed")}
+        return Counts(folder, **counts, before=before)
+
+
+def _digest(study: Study) -> str:
+    """Digest of all that a study's table depends on."""
+    from .. import __version__
+
+    measured = {name: float(values[0]).hex() for name, values in sorted(study.base.measured.items())}
+    parts = [__version__, study.base.family, repr(study.base.weaves), study.base.sections, study.base.thicker, measured]
+    parts += [study.factors, study.design, study.samples, study.seed, study.depth, study.mesh, study.figures]
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
+def _spread(figures: Mapping[str, Sequence], rows: np.ndarray, units: int) -> dict[str, Sequence]:
+    """Columns of fabrics as columns of units, empty where a unit is none."""
+    if len(rows) == units:
+        return dict(figures)
+    spread: dict[str, Sequence] = {}
+    for name, values in figures.items():
+        if isinstance(values, np.ndarray) and values.dtype.kind == "f":
+            spread[name] = np.full(units, np.nan)
+            spread[name][rows] = values
+        else:
+            column = [None] * units
+            for at, value in zip(rows.tolist(), values.tolist() if isinstance(values, np.ndarray) else values):
+                column[at] = value
+            spread[name] = column
+    return spread
+
+
+def _gathered(cells: Mapping[int, Mapping], units: int) -> dict[str, list]:
+    """Columns of the units' cells by unit number, in the order in which the units name them."""
+    names = dict.fromkeys(name for at in sorted(cells) for name in cells[at])
+    return {name: [cells.get(at, {}).get(name) for at in range(units)] for name in names}
+
+
+def _run_units(
+    study: Study, folder: Path, table: Family, rows: list[int], scheduler, workers, listen, refused: int
+) -> tuple[dict[int, Outcome], int]:
+    """Outcome of every fabric by unit number, and how many were there before."""
+    units = {at: table.take([at]) for at in rows}
+    keys = {at: unit_key(unit, study.depth, study.mesh, study.keep) for at, unit in units.items()}
+    cells = str((folder / "cells").absolute()) if study.keep else None
+    copies = Counter(keys.values())
+    store = Store(folder)
+    missing = {key: at for at, key in reversed(keys.items()) if key not in store.outcomes}  # equal units once
+    missing = dict(reversed(missing.items()))
+    before = refused + sum(key in store.outcomes for key in keys.values())
+    start, ended = time.perf_counter(), 0
+
+    def tell() -> None:
+        finished = before + ended
+        listen(Progress(len(table), finished, before, time.perf_counter() - start))
+
+    def tasks() -> Iterator[tuple[str, tuple]]:
+        for key, at in missing.items():
+            yield key, (units[at], study.depth, dict(study.mesh), study.limit_seconds, cells)
+
+    tell()
+    try:
+        for result in run_tasks(tasks(), run_unit, scheduler, workers) if missing else ():
+            if result is not None:
+                key, outcome = result
+                store.add(key, _outcome(outcome, study))
+                ended += copies[key]
+            tell()
+    except KeyboardInterrupt as error:
+        done = before + ended
+        message = f"stopped; {done} of {len(table)} units are finished, the same command goes on from there"
+        raise FabricCadError(message) from error
+    finally:
+        store.close()
+    return {at: store.outcomes[key] for at, key in keys.items()}, before
+
+
+def _outcome(result: object, study: Study) -> Outcome:
+    if isinstance(result, Outcome):
+        return result
+    if isinstance(result, ChildProcessError):
+        return Outcome("failed", f"twice its worker died or took longer than limit_seconds = {study.limit_seconds:g}")
+    return Outcome("failed", f"{type(result).__name__}: {result}")
+
+
+def _write(study: Study, folder: Path, samples: Samples, status, reasons, figures, costs, digest: str) -> None:
+    units = len(samples)
+    columns = {"unit": np.arange(units), **samples.labels, **samples.values}
+    columns |= {"status": status, "reason": [reasons.get(at) for at in range(units)], **figures}
+    if unknown := [name for name in study.figures if name not in figures]:
+        raise InputError(Problem(f"{', '.join(unknown)}: no such figure; {folder.name} has {', '.join(figures)}"))
+    found = sensitivities(study.design, samples, figures, study.figures)
+    with staged(folder) as aside:
+        write_table(columns, aside, digest)
+        if found:
+            _write_csv(aside / "sensitivity.csv", found)
+            from .picture import draw_sensitivities
+
+            draw_sensitivities(study.name, study.design, found, aside / "sensitivity.png")
+        if costs:
+            rows = [dict(zip(costs, values)) for values in zip(*costs.values())]
+            _write_csv(aside / "costs.csv", [{"unit": at, **row} for at, row in enumerate(rows)])
+
+
+def _write_csv(path: Path, rows: Sequence[dict]) -> None:
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)))
+        writer.writeheader()
+        writer.writerows(rows)

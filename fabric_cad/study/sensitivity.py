@@ -1,0 +1,149 @@
+"""Which factor a figure depends on, by the means that a study's design allows.
+
+========================  ==============================================================================
+design                    columns
+========================  ==============================================================================
+sobol                     first-order and total Sobol indices with 95 % intervals (scipy.stats)
+one-at-a-time             the figure at the factor's ends, its change, elasticity (change over change,
+                          both relative to the base row)
+grid, latin-hypercube     Spearman's rank correlation and its p-value (scipy.stats)
+========================  ==============================================================================
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from .design import Samples
+from .figures import HEADLINE
+
+RESAMPLES = 200
+"""Bootstrap resamples behind the intervals of Sobol indices."""
+
+Row = dict[str, object]
+
+
+def sensitivities(
+    design: str, samples: Samples, figures: Mapping[str, Sequence], asked: Sequence[str] = ()
+) -> list[Row]:
+    """One row a figure and factor; figures are columns of shape (units,), NaN where a unit has none.
+
+    Without ``asked`` those of :data:`~fabric_cad.study.figures.HEADLINE` that vary.
+    """
+    rows: list[Row] = []
+    for name in asked or HEADLINE:
+        values = np.array(figures[name], dtype=float) if name in figures else np.array([np.nan])
+        there = values[~np.isnan(values)]
+        if asked or (len(there) and np.ptp(there) > 1e-12 * np.abs(there).max()):
+            rows += [{"figure": name, **row} for row in METHODS[design](samples, values)] if len(there) else []
+    return rows
+
+
+def sobol_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
+    """First-order and total indices from Saltelli's design.
+
+    A base sample with a refused or failed unit is left out, and of the others the first power of two is taken.
+    """
+    from scipy import stats
+
+    n = len(values) // (len(samples.values) + 2)
+    blocks = values.reshape(-1, n)
+    whole = np.flatnonzero(~np.isnan(blocks).any(axis=0))
+    if len(whole) < 2:
+        return []
+    used = 2 ** int(np.log2(len(whole)))
+    blocks = blocks[:, whole[:used]]
+
+    def indices(at: np.ndarray) -> np.ndarray:
+        first, second, *mixed = blocks[:, at]
+        found = stats.sobol_indices(
+            func={"f_A": first[None], "f_B": second[None], "f_AB": np.array(mixed)[:, None]}, n=used
+        )
+        return np.array([np.atleast_1d(found.first_order), np.atleast_1d(found.total_order)]).reshape(2, -1)
+
+    everything = indices(np.arange(used))
+    spread = stats.bootstrap(
+        (np.arange(used),),
+        indices,
+        n_resamples=RESAMPLES,
+        vectorized=False,
+        method="percentile",
+        rng=np.random.default_rng(0),
+    ).confidence_interval
+    return [
+        {"factor": factor}
+        | {
+            f"{order}{end}": float(what[number, k])
+            for number, order in enumerate(("first_order", "total"))
+            for end, what in (("", everything), ("_low", spread.low), ("_high", spread.high))
+        }
+        | {"samples": used}
+        for k, factor in enumerate(samples.values)
+    ]
+
+
+def one_at_a_time_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
+    """Change of a figure between the least and greatest value of each factor that gave one."""
+    changed = np.array(samples.labels["changed"])
+    rows: list[Row] = []
+    for factor, column in samples.values.items():
+        at = np.flatnonzero(((changed == factor) | (changed == "")) & ~np.isnan(values))
+        if column.dtype.kind not in "if":
+            rows += [{"factor": factor, "value": str(column[k]), "figure_value": float(values[k])} for k in at]
+            continue
+        at = at[~np.isnan(column[at].astype(float))]
+        if len(at) < 2:
+            continue
+        low, high = at[column[at].argmin()], at[column[at].argmax()]
+        run, rise = float(column[high] - column[low]), float(values[high] - values[low])
+        base_factor, base_figure = float(column[0]), float(values[0])
+        known = base_figure and not np.isnan(base_figure + base_factor)
+        rows.append(
+            {
+                "factor": factor,
+                "low": float(column[low]),
+                "high": float(column[high]),
+                "figure_at_low": float(values[low]),
+                "figure_at_high": float(values[high]),
+                "change": rise,
+                "elasticity": rise / run * base_factor / base_figure if known else np.nan,
+            }
+        )
+    return rows
+
+
+def rank_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
+    """Spearman's correlation of a figure with every factor of numbers."""
+    from scipy import stats
+
+    rows: list[Row] = []
+    for factor, column in samples.values.items():
+        if column.dtype.kind not in "if":
+            continue
+        there = ~np.isnan(values) & ~np.isnan(column.astype(float))
+        if there.sum() > 2 and np.ptp(column[there]) > 0:
+            found = stats.spearmanr(column[there], values[there])
+            rows.append({"factor": factor, "spearman": float(found.statistic), "p_value": float(found.pvalue)})
+    return rows
+
+
+METHODS: dict[str, Callable[[Samples, np.ndarray], list[Row]]] = {
+    "sobol": sobol_sensitivity,
+    "one-at-a-time": one_at_a_time_sensitivity,
+    "grid": rank_sensitivity,
+    "latin-hypercube": rank_sensitivity,
+}
+
+
+def read_sensitivities(folder: str | Path) -> list[Row]:
+    """The rows of the ``sensitivity.csv`` in a study's folder; numbers as such, None where a cell is empty."""
+    with open(Path(folder) / "sensitivity.csv", newline="", encoding="utf-8") as file:
+        texts = ("figure", "factor", "value")
+        return [
+            {name: cell if name in texts else float(cell) if cell else None for name, cell in row.items()}
+            for row in csv.DictReader(file)
+        ]

@@ -1,0 +1,92 @@
+"""Finished units on disk: lines that are only ever added, so that a run may be killed at any moment.
+
+Every run adds to a file of its own, one line of JSON a unit, and a line that a kill left unfinished is
+passed over. A unit is known by a digest of all that its figures depend on, so that a study that was
+changed finds those of its units that are still the same.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import secrets
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from pathlib import Path
+
+from .. import __version__
+from ..errors import OutputError
+from ..tables import Family
+from .units import Outcome
+
+
+def unit_key(row: Family, depth: str, mesh: Mapping, keep: bool) -> str:
+    """Digest of a table of one row and of what is done with it."""
+    numbers = {name: float(values[0]).hex() for name, values in row.measured.items()}
+    inputs = [__version__, depth, sorted(mesh.items()), keep, row.family, repr(row.weaves[0])]
+    inputs += [row.sections[0], row.thicker[0], sorted(numbers.items())]
+    return hashlib.sha256(json.dumps(inputs).encode()).hexdigest()[:32]
+
+
+class Store:
+    """Outcomes by unit key, in a folder ``units`` of the study's own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder / "units"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.outcomes: dict[str, Outcome] = {}
+        for path in sorted(self.folder.glob("*.jsonl")):
+            for key, outcome in _lines(path):
+                self.outcomes.setdefault(key, outcome)
+        self.file = None
+
+    def add(self, key: str, outcome: Outcome) -> None:
+        """Record a unit; it is on the disk when this returns."""
+        if self.file is None:
+            self.file = open(self.folder / f"{os.getpid()}-{secrets.token_hex(4)}.jsonl", "x", encoding="utf-8")
+        self.file.write(json.dumps({"key": key, **asdict(outcome)}) + "\n")
+        self.file.flush()
+        os.fsync(self.file.fileno())
+        self.outcomes[key] = outcome
+
+    def close(self) -> None:
+        if self.file is not None:
+            self.file.close()
+
+
+def _lines(path: Path) -> Iterator[tuple[str, Outcome]]:
+    for line in path.read_bytes().split(b"\n"):
+        with suppress(ValueError, KeyError, TypeError):  # a line cut short by a kill
+            record = json.loads(line)
+            key = record.pop("key")
+            yield key, Outcome(**record)
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Keep other runs out of a study's folder; the system lets go when this process ends, however it does.
+
+    Raises :class:`OutputError` where a run is under way. Without such locks (Windows) two runs
+    only do their units twice.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / ".lock", "a+", encoding="utf-8") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            lock.seek(0)
+            raise OutputError(
+                f"{folder}: another run of this study is under way (process {lock.read().strip() or 'unknown'}); "
+                "its table will be here"
+            ) from error
+        lock.truncate(0)
+        lock.write(str(os.getpid()))
+        lock.flush()
+        yield

@@ -1,0 +1,109 @@
+"""What one unit of a study does, in whichever process it runs."""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..errors import FabricCadError, InputError
+from ..pipeline import Stages, checked_report, make_mesh, make_step, write_report
+from ..staging import staged
+from ..tables import Family
+from .figures import flat
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a unit: ``done``, ``refused`` (no fabric) or ``failed``, why, and its figures.
+
+    ``costs`` are s by stage and in all (``unit``), s of processor time (``processor``), and
+    ``process_megabytes``, the most that the process it ran in has held so far.
+    """
+
+    status: str
+    reason: str = ""
+    figures: Mapping[str, object] = field(default_factory=dict)
+    costs: Mapping[str, float] = field(default_factory=dict)
+
+
+def _cell(row: Family, mesh: Mapping, folder: Path, stages: Stages) -> dict:
+    return checked_report(make_step(row, folder, stages), None, stages)
+
+
+def _mesh(row: Family, mesh: Mapping, folder: Path, stages: Stages) -> dict:
+    from ..meshing.options import mesh_options
+
+    made = make_step(row, folder, stages)
+    return checked_report(made, make_mesh(made, mesh_options(made.fabric, **mesh), stages), stages)
+
+
+DEPTHS: dict[str, Callable[[Family, Mapping, Path, Stages], dict] | None] = {
+    "identify": None,  # whole tables at once, see fabric_cad.study.run
+    "cell": _cell,
+    "mesh": _mesh,
+}
+"""How far a study goes: from a row, mesh keywords, a folder for files and a stopwatch to a report."""
+
+_ONE_AT_A_TIME = threading.Lock()
+"""CadQuery and gmsh have one state a process: a worker of several threads runs one unit at a time."""
+
+
+def run_unit(row: Family, depth: str, mesh: Mapping, limit: float, keep: str | None) -> Outcome:
+    """Run a table of one row to a depth; ``keep`` names the folder for its files, which are dropped without it.
+
+    A unit that takes longer than ``limit`` s ends its process, whatever that is doing.
+    """
+    with _ONE_AT_A_TIME, _ended_after(limit):
+        stages, start, used = Stages(), time.perf_counter(), time.process_time()
+        try:
+            report = _kept(row, depth, mesh, keep, stages)
+        except InputError as error:
+            return Outcome("refused", reason_of(error))
+        except FabricCadError as error:
+            return Outcome("failed", str(error))
+        seconds = stages.seconds | {"unit": time.perf_counter() - start, "processor": time.process_time() - used}
+        costs = {name: round(value, 4) for name, value in seconds.items()}
+        return Outcome("done", "", flat(report), costs | _memory())
+
+
+def _kept(row: Family, depth: str, mesh: Mapping, keep: str | None, stages: Stages) -> dict:
+    if keep is None:
+        with tempfile.TemporaryDirectory(prefix="fabric-cad-") as folder:
+            return DEPTHS[depth](row, mesh, Path(folder), stages)
+    with staged(Path(keep) / row.names[0]) as folder:
+        report = DEPTHS[depth](row, mesh, folder, stages)
+        write_report(report, folder)
+        return report
+
+
+def _memory() -> dict[str, float]:
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return {}
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return {"process_megabytes": peak / (1e6 if sys.platform == "darwin" else 1e3)}
+
+
+def reason_of(error: InputError) -> str:
+    """Why a row is no fabric: its columns and what is wrong with them, without the place in a file."""
+    return "; ".join(f"{each.column}: {each.message}" if each.column else each.message for each in error.problems)
+
+
+@contextmanager
+def _ended_after(limit: float):
+    """End the process after so many seconds, from a thread of the interpreter's own that needs no turn of Python's."""
+    with open(os.devnull, "w") as nowhere:
+        faulthandler.dump_traceback_later(limit, exit=True, file=nowhere)
+        try:
+            yield
+        finally:
+            faulthandler.cancel_dump_traceback_later()

@@ -1,0 +1,220 @@
+"""Whole studies: tables, what is never run again, and what a kill leaves behind."""
+
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fabric_cad.cli import main, shipped_families
+from fabric_cad.errors import OutputError
+from fabric_cad.pipeline import find_row, make_cell
+from fabric_cad.study import read_study, run_study
+from fabric_cad.study.store import held
+from fabric_cad.study.table import read_table
+
+SOBOL = """
+base = "plain_measured"
+design = "sobol"
+samples = 64
+seed = 3
+[factors]
+weft_density_per_mm = "normal"
+weft_width_mm = { from = 3.0, to = 4.7 }
+weft_crimp = "normal"
+"""
+CELLS = """
+base = "plain"
+design = "grid"
+depth = "{depth}"
+{more}
+[factors]
+weft_width_mm = {widths}
+"""
+COARSE = "mesh = { across = 6, gap = 2 }"
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    shutil.copytree(shipped_families(), tmp_path / "families")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def cells(depth="mesh", more=COARSE, widths=(2.8, 3.6, 4.4)):
+    return CELLS.format(depth=depth, more=more, widths=list(widths))
+
+
+def study(text, name="study.toml"):
+    Path(name).write_text(text, encoding="utf-8")
+    return read_study(name)
+
+
+def lines(name="study"):
+    return sum(path.read_bytes().count(b"\n") for path in Path("build", name, "units").glob("*.jsonl"))
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """A scheduler and two workers on the loopback, as someone else would have started them."""
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as found:
+        yield found
+
+
+def test_an_identify_study_keeps_refused_fabrics_and_finds_what_matters(here, capsys):
+    Path("study.toml").write_text(SOBOL)
+    assert main(["study", "study.toml"]) == 0
+    said = capsys.readouterr().out
+    found = read_table("build/study")
+    assert len(found["unit"]) == 64 * 5
+    refused = found["status"] == "refused"
+    assert 0 < refused.sum() < 100 and f"{refused.sum()} refused" in said
+    assert all("is not below the weft spacing" in each for each in found["reason"][refused])
+    fraction = found["volumes.yarn_volume_fraction"]
+    np.testing.assert_array_equal(np.isnan(fraction), refused)
+    text = Path("build/study/table.csv").read_text().splitlines()
+    assert len(text) == 64 * 5 + 1 and float(text[1].split(",")[3]) == found["weft_density_per_mm"][0]
+    sensitivity = Path("build/study/sensitivity.csv").read_text()
+    assert "volumes.yarn_volume_fraction,weft_width_mm," in sensitivity
+    assert Path("build/study/sensitivity.png").stat().st_size > 10_000
+
+
+def test_a_finished_identify_study_is_left_alone(here):
+    one = run_study(study(SOBOL))
+    stamp = Path("build/study/table.parquet").stat().st_mtime_ns
+    two = run_study(study(SOBOL))
+    assert (one.before, two.before) == (0, 320) and one.done == two.done
+    assert Path("build/study/table.parquet").stat().st_mtime_ns == stamp
+    assert run_study(study(SOBOL.replace("seed = 3", "seed = 4"))).before == 0
+    assert Path("build/study/table.parquet").stat().st_mtime_ns > stamp
+
+
+def test_a_figure_that_is_none_is_told(here, capsys):
+    Path("a.toml").write_text("figures = ['volumes.yarn']\n" + SOBOL)
+    assert main(["study", "a.toml"]) == 2
+    assert capsys.readouterr().err.startswith("volumes.yarn: no such figure; a has weave.over, ")
+    assert not Path("build/a/table.csv").exists()
+
+
+def test_a_mesh_study_on_a_cluster(here, cluster):
+    address = cluster.scheduler_address
+    told = []
+    first = run_study(study(cells()), scheduler=address, listen=told.append)
+    assert (first.done, first.refused, first.failed, first.before, lines()) == (3, 0, 0, 0, 3)
+    assert told[-1].finished == told[-1].units == 3 and told[-1].rate > 0 and told[-1].left == 0
+    found = read_table("build/study")
+    row = find_row("families", "plain")[0]
+    report = make_cell(row, "build", {"across": 6, "gap": 2})
+    assert (found["mesh.hexahedra"] == report["mesh"]["hexahedra"]).all()
+    assert (found["mesh.min_scaled_jacobian"] > 0.2).all()
+    assert (found["consistency.max_penetration_mm"] < 1e-12).all()
+    table = Path("build/study/table.parquet").read_bytes()
+
+    again = run_study(study(cells()), scheduler=address)  # nothing is run again
+    assert (again.before, lines()) == (3, 3) and Path("build/study/table.parquet").read_bytes() == table
+    wider = run_study(study(cells(widths=(2.8, 3.6, 4.4, 5.2, 6.0))), scheduler=address)
+    assert (wider.done, wider.refused, wider.before) == (3, 2, 5)
+    assert read_table("build/study")["status"].tolist() == ["done", "done", "done", "refused", "refused"]
+    assert lines() == 3
+
+
+def test_kept_files_are_in_a_folder_of_the_unit(here, cluster):
+    run_study(study(cells("cell", "keep = true", (2.8, 4.4))), scheduler=cluster.scheduler_address)
+    kept = sorted(path.relative_to("build/study/cells").as_posix() for path in Path("build/study/cells").glob("*/*"))
+    assert kept == [f"plain_{k}/{name}" for k in (0, 1) for name in (f"plain_{k}.step", "report.json", "solved.csv")]
+    report = json.loads(Path("build/study/cells/plain_1/report.json").read_text())
+    assert report["identified"]["weft"]["width_mm"] == 4.4 and "mesh" not in report
+
+
+def test_a_unit_over_its_limit_is_recorded_as_failed_and_not_tried_again(here):
+    text = cells("cell", "limit_seconds = 0.2", (2.8, 4.4))  # loading CadQuery takes longer
+    one = run_study(study(text), workers=2)
+    assert (one.done, one.failed) == (0, 2)
+    reason = read_table("build/study")["reason"][0]
+    assert reason == "twice its worker died or took longer than limit_seconds = 0.2"
+    assert run_study(study(text), workers=2).before == 2
+
+
+def test_another_run_of_the_same_study_is_told_so(here, capsys):
+    Path("study.toml").write_text(SOBOL)
+    with held(Path("build/study")):
+        assert main(["study", "study.toml"]) == 1
+        with pytest.raises(OutputError):
+            run_study(read_study("study.toml"))
+    told = capsys.readouterr().err
+    assert told == (
+        f"build/study: another run of this study is under way (process {os.getpid()}); its table will be here\n"
+    )
+    assert main(["study", "study.toml", "-q"]) == 0
+
+
+def start(*arguments):
+    return subprocess.Popen(
+        [sys.executable, "-m", "fabric_cad", "study", "study.toml", "--workers", "2", *arguments],
+        start_new_session=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def wait_for(condition, process, seconds=120.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert process.poll() is None and time.monotonic() < end, process.communicate()
+        time.sleep(0.01)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills a process group")
+def test_three_kills_leave_the_same_table(here):
+    chance = random.Random(5)
+    Path("study.toml").write_text(cells("cell", "", np.linspace(2.8, 4.4, 10).tolist()))
+    for _ in range(3):
+        before = lines()
+        process = start()
+        wait_for(lambda: lines() > before, process)
+        time.sleep(chance.uniform(0.0, 0.3))
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+    assert 3 <= lines() <= 10
+    path = max(Path("build/study/units").glob("*.jsonl"), key=lambda each: each.stat().st_size)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) - 40])  # and one line is torn
+    assert start().wait(timeout=120) == 0
+    assert lines() == 10
+    disturbed = {name: Path("build/study", name).read_bytes() for name in ("table.parquet", "table.csv")}
+    process = start("--out", "undisturbed")
+    assert process.wait(timeout=120) == 0
+    for name, content in disturbed.items():
+        assert Path("undisturbed/study", name).read_bytes() == content
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends a POSIX signal")
+def test_ctrl_c_leaves_a_study_that_goes_on(here):
+    Path("study.toml").write_text(cells("cell", "", np.linspace(2.8, 4.4, 12).tolist()))
+    process = start()
+    wait_for(lambda: lines() >= 1, process)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+    out, told = process.communicate(timeout=60)
+    assert process.returncode == 1 and out == ""
+    assert told.splitlines()[-1].endswith("of 12 units are finished, the same command goes on from there")
+    assert "Traceback" not in told
+    assert 1 <= lines() < 12 and not Path("build/study/table.csv").exists()
+
+
+def test_the_readmes_example_runs(here):
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    (example,) = (part.split("```")[0] for part in readme.split("```toml\n")[1:])
+    counts = run_study(study(example))
+    assert counts.done + counts.refused == 200 and counts.done > 100
+    rows = Path("build/study/sensitivity.csv").read_text().splitlines()
+    assert rows[0] == "figure,factor,spearman,p_value" and len(rows) > 9
