@@ -175,6 +175,20 @@ class Bench:
             whole,
         ]
 
+    def tension(self, row: str, what: str, case: str, promised: str) -> Figure:
+        """A row's biaxial tension, from the table to the pictures; ``case`` is the [tension] of its settings."""
+        families = self.folder / "families_loaded"
+        families.mkdir(exist_ok=True)
+        for table in (ROOT / "families").glob("*.csv"):
+            (families / table.name).write_bytes(table.read_bytes())
+        (families / "simulation.toml").write_text(f"[tension]\n{case}")
+        folders = ["--families", str(families), "--out", str(self.folder / "build")]
+        figure = self.command(f"tension {row}, {what}", [*FABRIC_CAD, "tension", row, *folders], promised, runs=1)
+        report = json.loads((self.folder / "build" / row / "tension.json").read_text())
+        size = f"{report['mesh']['hexahedra']} hexahedra, {report['solver']['states']} states"
+        memory = max(figure.megabytes, report["solver"]["peak_memory_MB"])
+        return Figure(**(asdict(figure) | {"size": size, "megabytes": memory, "stages": report["seconds"]}))
+
     def study(self, name: str, base: str, depth: str, units: int, width: str, crimp: str) -> Path:
         file = self.folder / f"{name}.toml"
         file.write_text(
@@ -209,6 +223,7 @@ class Bench:
 
 
 _NO_STAGE = ("unit", "processor", "process_megabytes", "load CadQuery")
+_EQUAL = "ratios = [1]\npoints = 1\ngrid = 0\n"
 _MILLION = ("--across", "36", "--through", "8", "--gap", "44")
 
 FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
@@ -225,6 +240,9 @@ FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
     lambda b: b.cell("satin16", "4.5 x satin8", families=b.folder / "families16", runs=1),
     lambda b: b.cell("twill32", "60 s, 6000 MB", *_MILLION, runs=1),
     lambda b: b.floors("twill32"),
+    lambda b: b.tension("plain_flat", "k = 1 to 0.4 %", _EQUAL, "10 s"),
+    lambda b: b.tension("plain_flat", "5 x 5 surface", "ratios = [1]\npoints = 4\ngrid = 5\n", "120 s, 2000 MB"),
+    lambda b: b.tension("twill22", "k = 1 to 0.4 %", _EQUAL, "60 s"),
     lambda b: b.cells(200, "0.7 s"),
 )
 """What is measured, in this order: add a line for a figure more."""

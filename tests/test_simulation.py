@@ -15,6 +15,7 @@ from scipy.integrate import simpson
 from fabric_cad.cli import main, shipped_families
 from fabric_cad.decks.keywords import Boundary, Compaction, EngineeringConstants, Material, write_keywords
 from fabric_cad.decks.model import Load, Touch, model_keywords
+from fabric_cad.pipeline import find_row
 from fabric_cad.simulation.energy import cell_energy
 from fabric_cad.simulation.job import Solver, at_rest, run_job, transverse_strains, write_model
 from fabric_cad.simulation.penetration import penetration
@@ -23,6 +24,7 @@ from fabric_cad.simulation.settings import YarnLaw, read_settings
 from fabric_cad.simulation.shear import cell_vectors, moment, shear_loads
 from fabric_cad.simulation.solver import find_solver
 from fabric_cad.simulation.tension import curves, paths, tension_loads
+from fabric_cad.study.units import Work, run_unit
 
 pytestmark = needs_ccx
 FAMILIES = shipped_families()
@@ -313,6 +315,20 @@ def test_what_a_stopped_solver_reached_is_kept_aside(tmp_path, capsys):
     assert {"tension.inp", "tension.log", "tension.json", "tension.csv"} <= {file.name for file in kept.iterdir()}
     assert before.read_text() == "earlier\n"
     assert not json.loads((kept / "tension.json").read_text())["solver"]["finished"]
+
+
+def test_a_unit_of_a_study_is_stretched(tmp_path):
+    row, _ = find_row(small(tmp_path), "plain_flat")
+    work = Work("tension", {"across": 4, "gap": 2}, 300.0, read_settings(tmp_path / "families", "plain_flat"))
+    outcome = run_unit(row, work, str(tmp_path / "kept"))
+    assert (outcome.status, outcome.reason) == ("done", "")
+    figures = outcome.figures
+    assert figures["tension.k=1.T11_N_per_yarn"] == pytest.approx(figures["tension.k=1.T22_N_per_yarn"], rel=0.03)
+    assert figures["consistency.max_penetration_mm"] < 1e-9 < figures["tension.max_penetration_mm"]
+    assert figures["mesh.hexahedra"] == 2 * 4 * (2 * (4 + 2)) * 2 * 2
+    assert {"tension.csv", "tension.vtu", "report.json"} <= {
+        file.name for file in (tmp_path / "kept/plain_flat").iterdir()
+    }
 
 
 def test_tied_yarns_and_friction_run_too(folder, mesh):

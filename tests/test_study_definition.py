@@ -52,7 +52,7 @@ section = ["lenticular", "round"]
     percent = found.factors["weft_crimp_percent"]  # as wide as has the row's standard deviation 0.04 %
     assert (percent.low + percent.high) / 2 == pytest.approx(0.4)
     assert (percent.high - percent.low) / 12**0.5 == pytest.approx(0.04)
-    assert (found.name, found.depth, found.keep) == ("study", "identify", False)
+    assert (found.name, found.work.depth, found.keep) == ("study", "identify", False)
 
 
 def test_everything_wrong_is_told_with_its_line(here):

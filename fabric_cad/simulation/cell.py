@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from ..errors import BuildError
 from ..meshing.mesh import Mesh
-from ..pipeline import Stages
+from ..pipeline import Stages, checked_report, make_mesh, make_step
 from ..solved import SolvedFabric
 from ..tables import Family
 from .settings import Settings
@@ -15,53 +15,22 @@ from .settings import Settings
 
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """The cell that is loaded: its fabric, its mesh, and what was measured on the mesh."""
+    """The cell that is loaded: its fabric, its mesh, and the report of what was measured on its files."""
 
     fabric: SolvedFabric
     mesh: Mesh
-    quality: dict[str, float]
+    report: dict
 
 
-def loaded_cell(row: Family, settings: Settings, options: dict[str, int | float], folder: Path, stages: Stages) -> Cell:
-    """The cell of a table of one row; its STEP and mesh pass through files in ``folder``.
+def loaded_cell(row: Family, settings: Settings, options: Mapping, folder: Path, stages: Stages) -> Cell:
+    """The cell of a table of one row, with its STEP and mesh file in ``folder``.
 
     ``options``, keywords of :func:`fabric_cad.mesh_options`, win over the settings' mesh. Raises
-    :class:`InputError` where they do not fit, :class:`BuildError` where the mesh is unsound.
+    :class:`InputError` where they do not fit, :class:`BuildError` where the cell is not consistent.
     """
-    from ..identification import identify
     from ..meshing.options import mesh_options
-    from ..report import contact_pairing, end_pairing
 
-    with stages("identify"):
-        fabric = identify(row)[row.names[0]]
-    asked = options if "size" in options else {k: v for k, v in asdict(settings.mesh).items() if v} | options
-    chosen = mesh_options(fabric, **asked)
-    with stages("solids"):
-        from ..masters import build_cell
-
-        solids = build_cell(fabric)
-    step, msh = folder / "cell.step", folder / "cell.msh"
-    with stages("write STEP"):
-        solids.write_step(step)
-    with stages("mesh"):
-        from ..meshing.mesher import mesh_cell, read_mesh
-
-        mesh_cell(step, fabric, chosen, msh)
-        mesh = read_mesh(msh)
-    step.unlink()
-    msh.unlink()
-    with stages("quality"):
-        from ..views import scaled_jacobians
-
-        worst = float(scaled_jacobians(mesh).min())
-        contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.period)
-    if not worst > 0 or contact.nodes != contact.paired or ends.nodes != ends.paired:
-        raise BuildError(f"{fabric.name}: the mesh has elements turned inside out or nodes without their partner")
-    quality = {
-        "nodes": len(mesh.points),
-        "hexahedra": len(mesh.hexahedra),
-        "min_scaled_jacobian": worst,
-        "contact_nodes": contact.nodes,
-        "coincident_contact_nodes": contact.paired,
-    }
-    return Cell(fabric, mesh, quality)
+    asked = options if "size" in options else {k: v for k, v in asdict(settings.mesh).items() if v} | dict(options)
+    made = make_step(row, folder, stages)
+    meshed = make_mesh(made, mesh_options(made.fabric, **asked), stages)
+    return Cell(made.fabric, meshed.mesh, checked_report(made, meshed, stages))

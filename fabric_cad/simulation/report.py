@@ -48,7 +48,8 @@ def case_report(case: Case, name: str, jobs: list[Job], rows: list[dict], found:
         "row": name,
         "case": case.kind,
         "settings": {key: settings[key] for key in ("yarn", "contact", case.kind)},
-        "mesh": case.cell.quality,
+        "consistency": case.cell.report["consistency"],
+        "mesh": case.cell.report["mesh"],
         "solver": {
             "version": jobs[0].run.version,
             "finished": jobs[-1].run.finished,

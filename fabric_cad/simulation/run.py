@@ -8,7 +8,8 @@ from __future__ import annotations
 import json
 import math
 import shutil
-from collections.abc import Callable, Iterable
+import tempfile
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ from .cell import loaded_cell
 from .job import Job, Reached, Solver, at_rest, condition, run_job, transverse_strains, write_model
 from .penetration import valid_until
 from .report import Case, case_report, plain, write_rows
-from .settings import read_settings
+from .settings import Settings, read_settings
 from .shear import angles, cell_vectors, shear_loads, shear_row
 from .tension import by_curve, paths, tension_loads, tension_row
 
@@ -38,64 +39,76 @@ def make_tension(row: Family, families: str | Path, out: str | Path, solver: Sol
     ``stages``. Raises :class:`FabricCadError`; where the solver stopped early, what it reached is
     in ``out/<row name>/tension_incomplete``, and earlier results are as they were.
     """
-    return _make("tension", _tension, row, families, out, solver, **options)
+    return _make("tension", row, families, out, solver, **options)
 
 
 def make_shear(row: Family, families: str | Path, out: str | Path, solver: Solver | None = None, **options) -> dict:
     """Trellis shear of one row's cell; as :func:`make_tension`."""
-    return _make("shear", _shear, row, families, out, solver, **options)
+    return _make("shear", row, families, out, solver, **options)
 
 
-def write_case(kind: str, row: Family, families: str | Path, out: str | Path, dialect: str, **options) -> list[Path]:
+def write_case(
+    kind: str,
+    row: Family,
+    families: str | Path,
+    out: str | Path,
+    dialect: str,
+    mesh: Mapping | None = None,
+    stages: Stages | None = None,
+) -> list[Path]:
     """Write the decks of a case and run nothing; their places in ``out/<row name>``. Options as above."""
-    name = row.names[0]
+    name, settings = row.names[0], read_settings(families, row.names[0])
     with staged(Path(out) / name) as folder:
-        case = _prepared(kind, row, families, folder, **options)
+        case = _prepared(kind, row, settings, folder, mesh or {}, stages or Stages())
         return [Path(out) / name / deck.name for deck, _ in _decks(case, dialect)]
 
 
 def _make(
     kind: str,
-    work: Callable[[Case, list[Job]], tuple[list[dict], dict]],
     row: Family,
     families: str | Path,
     out: str | Path,
     solver: Solver | None,
-    **options,
+    mesh: Mapping | None = None,
+    stages: Stages | None = None,
 ) -> dict:
-    name, solver = row.names[0], solver or Solver()
+    name, settings = row.names[0], read_settings(families, row.names[0])
     with staged(Path(out) / name) as folder:
-        case = _prepared(kind, row, families, folder, **options)
-        jobs = []
-        for deck, loads in _decks(case, "calculix"):
-            with case.stages(f"solve {deck.stem}"):
-                jobs.append(run_job(deck, case.cell.mesh, loads, solver))
-            if not jobs[-1].run.finished:
-                break
-        rows, found = work(case, jobs)
-        report = case_report(case, name, jobs, rows, found)
-        write_rows(case.path(".csv"), rows)
-        case.path(".json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
-        if not jobs[-1].run.finished:
+        report, _ = run_case(kind, row, settings, folder, solver or Solver(), mesh or {}, stages or Stages())
+        if not report["solver"]["finished"]:
             target = Path(out) / name / f"{kind}_{INCOMPLETE}"
             with staged(target) as kept:
                 for file in folder.iterdir():
                     shutil.move(file, kept / file.name)
-            raise SolverError(f"{name}: the solver {jobs[-1].run.reason}; what it reached is in {target}")
+            raise SolverError(f"{name}: the solver {report['solver']['reason']}; what it reached is in {target}")
     return report
 
 
-def _prepared(
-    kind: str,
-    row: Family,
-    families: str | Path,
-    folder: Path,
-    mesh: dict[str, int | float] | None = None,
-    stages: Stages | None = None,
-) -> Case:
-    """The row's settings and its cell, meshed."""
-    settings, stages = read_settings(families, row.names[0]), stages or Stages()
-    return Case(kind, loaded_cell(row, settings, mesh or {}, folder, stages), settings, folder, stages)
+def run_case(
+    kind: str, row: Family, settings: Settings, folder: Path, solver: Solver, mesh: Mapping, stages: Stages
+) -> tuple[dict, dict]:
+    """Run ``tension`` or ``shear`` with every file in ``folder``.
+
+    Its report, which tells whether the solver finished, and that of the cell that was loaded.
+    """
+    case = _prepared(kind, row, settings, folder, mesh, stages)
+    jobs: list[Job] = []
+    for deck, loads in _decks(case, "calculix"):
+        with stages(f"solve {deck.stem}"):
+            jobs.append(run_job(deck, case.cell.mesh, loads, solver))
+        if not jobs[-1].run.finished:
+            break
+    rows, found = _WORK[kind](case, jobs)
+    report = case_report(case, row.names[0], jobs, rows, found)
+    write_rows(case.path(".csv"), rows)
+    case.path(".json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    return report, case.cell.report
+
+
+def _prepared(kind: str, row: Family, settings: Settings, folder: Path, mesh: Mapping, stages: Stages) -> Case:
+    """The row's cell, meshed; its own files are dropped."""
+    with tempfile.TemporaryDirectory(prefix="fabric-cad-") as scratch:
+        return Case(kind, loaded_cell(row, settings, mesh, Path(scratch), stages), settings, folder, stages)
 
 
 def _decks(case: Case, dialect: str) -> list[tuple[Path, tuple[Load, ...]]]:
@@ -163,6 +176,10 @@ def _shear(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
         "valid_up_to_deg": valid_until(states, depths, case.penetration_bound) if states else 0.0,
         "largest": plain(rows[-1]) if rows else None,
     }
+
+
+_WORK: dict[str, Callable[[Case, list[Job]], tuple[list[dict], dict]]] = {"tension": _tension, "shear": _shear}
+"""Table, report and pictures of each kind of case."""
 
 
 def _conditions(case: Case, reached: list[Reached], vectors: list[np.ndarray]) -> list[dict[str, float]]:

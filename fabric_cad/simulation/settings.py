@@ -144,7 +144,7 @@ _CHECKS: dict[str, dict[str, Check]] = {
         "strain": (float, lambda v: 0 < v <= 0.1, "is not above 0 and up to 0.1"),
         "ratios": (list, lambda v: bool(v) and all(_is_ratio(k) for k in v), "is not a list of numbers from 0 to inf"),
         "points": _count(1, 100),
-        "grid": _count(2, 50),
+        "grid": _count(0, 50),
     },
     "shear": {
         "angle_deg": (float, lambda v: 0 < v <= 60, "is not above 0 and up to 60"),

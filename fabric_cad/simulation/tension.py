@@ -44,7 +44,7 @@ def paths(case: TensionCase, contact: ContactLaw) -> tuple[tuple[tuple[float, fl
     Without friction a state does not depend on how it was reached, and one path winds through all
     of them. With friction a curve is a path of its own, and a row of the grid (one E22) another.
     """
-    levels = [case.strain * at / (case.grid - 1) for at in range(case.grid)]
+    levels = [case.strain * at / (case.grid - 1) for at in range(case.grid)] if case.grid > 1 else []
     rays = [curve.states for curve in curves(case)]
     if contact.friction:
         rows = [tuple((weft, warp) for weft in levels if weft or warp) for warp in levels]

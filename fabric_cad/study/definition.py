@@ -12,12 +12,13 @@ from pathlib import Path
 
 from ..errors import InputError, Problem
 from ..pipeline import find_row
+from ..simulation.settings import read_settings
 from ..tables import MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
 from ..weaves import DIRECTIONS
 from .design import DESIGNS, RANDOM
 from .factors import Factor, Normal, Uniform, Values
 from .rows import CHOICES, base_value, kept_column, weave_cells, weave_fault
-from .units import DEPTHS
+from .units import DEPTHS, Work
 
 _MESH = {"size": float, "across": int, "crossing": int, "through": int, "gap": int}
 _TEXTS = {"section": SECTIONS, "thicker": DIRECTIONS}
@@ -30,9 +31,8 @@ MOST_UNITS = 10_000_000
 class Study:
     """A study as its file defines it; ``base`` is a table of one row.
 
-    ``factors`` maps columns of that table to what varies, ``mesh`` holds keywords of
-    :func:`fabric_cad.meshing.mesh_options`, ``figures`` names the figures whose sensitivity is
-    asked for (none: the usual ones), ``limit_seconds`` is what one unit may take.
+    ``factors`` maps columns of that table to what varies, ``work`` is what is done with every unit,
+    ``figures`` names the figures whose sensitivity is asked for (none: the usual ones).
     """
 
     name: str
@@ -41,10 +41,8 @@ class Study:
     design: str
     samples: int
     seed: int
-    depth: str
-    mesh: Mapping[str, object]
+    work: Work
     figures: tuple[str, ...]
-    limit_seconds: float
     keep: bool
 
 
@@ -172,6 +170,7 @@ class _Reader:
             self.check_size(factors, design, found.get("samples", 0))
         if self.problems:
             raise InputError(self.problems)
+        settings = read_settings(families, base.names[0]) if depth == "tension" else None
         return Study(
             name=self.path.stem,
             base=base,
@@ -179,10 +178,8 @@ class _Reader:
             design=design,
             samples=found.get("samples", 0),
             seed=found.get("seed", 0),
-            depth=depth,
-            mesh=mesh,
+            work=Work(depth, mesh, float(found.get("limit_seconds", 600.0)), settings),
             figures=tuple(figures),
-            limit_seconds=float(found.get("limit_seconds", 600.0)),
             keep=found.get("keep", False),
         )
 

@@ -25,6 +25,8 @@ HEADLINE = (
     "volumes.weft_fibre_fraction",
     "volumes.warp_fibre_fraction",
     "mesh.min_scaled_jacobian",
+    "tension.k=0.T11_N_per_yarn",
+    "tension.k=1.T11_N_per_yarn",
 )
 """Figures whose sensitivity is computed where a study names none."""
 

@@ -84,7 +84,7 @@ def run_study(
         good = np.delete(np.arange(len(table)), list(refused))
         found = identify_rows(table.take(good) if refused else table)
         reasons |= {int(good[at]): reason_of(InputError(problem)) for at, problem in found.refused.items()}
-        if study.depth == "identify":
+        if study.work.depth == "identify":
             part = table.take(good) if refused else table
             figures = _spread(identified_figures(part, found), good[found.rows], len(table))
             status, before = ["done"] * len(table), 0
@@ -116,7 +116,7 @@ def _digest(study: Study) -> str:
 
     measured = {name: float(values[0]).hex() for name, values in sorted(study.base.measured.items())}
     parts = [__version__, study.base.family, repr(study.base.weaves), study.base.sections, study.base.thicker, measured]
-    parts += [study.factors, study.design, study.samples, study.seed, study.depth, study.mesh, study.figures]
+    parts += [study.factors, study.design, study.samples, study.seed, study.work, study.figures]
     return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
@@ -148,7 +148,7 @@ def _run_units(
 ) -> tuple[dict[int, Outcome], int]:
     """Outcome of every fabric by unit number, and how many were there before."""
     units = {at: table.take([at]) for at in rows}
-    keys = {at: unit_key(unit, study.depth, study.mesh, study.keep) for at, unit in units.items()}
+    keys = {at: unit_key(unit, study.work, study.keep) for at, unit in units.items()}
     cells = str((folder / "cells").absolute()) if study.keep else None
     copies = Counter(keys.values())
     store = Store(folder)
@@ -163,7 +163,7 @@ def _run_units(
 
     def tasks() -> Iterator[tuple[str, tuple]]:
         for key, at in missing.items():
-            yield key, (units[at], study.depth, dict(study.mesh), study.limit_seconds, cells)
+            yield key, (units[at], study.work, cells)
 
     tell()
     try:
@@ -186,7 +186,9 @@ def _outcome(result: object, study: Study) -> Outcome:
     if isinstance(result, Outcome):
         return result
     if isinstance(result, ChildProcessError):
-        return Outcome("failed", f"twice its worker died or took longer than limit_seconds = {study.limit_seconds:g}")
+        return Outcome(
+            "failed", f"twice its worker died or took longer than limit_seconds = {study.work.limit_seconds:g}"
+        )
     return Outcome("failed", f"{type(result).__name__}: {result}")
 
 

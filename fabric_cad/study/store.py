@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 import secrets
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -19,14 +19,14 @@ from pathlib import Path
 from .. import __version__
 from ..errors import OutputError
 from ..tables import Family
-from .units import Outcome
+from .units import Outcome, Work
 
 
-def unit_key(row: Family, depth: str, mesh: Mapping, keep: bool) -> str:
+def unit_key(row: Family, work: Work, keep: bool) -> str:
     """Digest of a table of one row and of what is done with it."""
     numbers = {name: float(values[0]).hex() for name, values in row.measured.items()}
-    inputs = [__version__, depth, sorted(mesh.items()), keep, row.family, repr(row.weaves[0])]
-    inputs += [row.sections[0], row.thicker[0], sorted(numbers.items())]
+    inputs = [__version__, work.depth, sorted(work.mesh.items()), repr(work.settings), keep]
+    inputs += [row.family, repr(row.weaves[0]), row.sections[0], row.thicker[0], sorted(numbers.items())]
     return hashlib.sha256(json.dumps(inputs).encode()).hexdigest()[:32]
 
 

@@ -13,8 +13,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..errors import FabricCadError, InputError
+from ..errors import FabricCadError, InputError, SolverError
 from ..pipeline import Stages, checked_report, make_mesh, make_step, write_report
+from ..simulation.settings import Settings
 from ..staging import staged
 from ..tables import Family
 from .figures import flat
@@ -34,37 +35,63 @@ class Outcome:
     costs: Mapping[str, float] = field(default_factory=dict)
 
 
-def _cell(row: Family, mesh: Mapping, folder: Path, stages: Stages) -> dict:
+@dataclass(frozen=True)
+class Work:
+    """What is done with every unit: how far it goes, keywords of its mesh, s it may take, materials and loads."""
+
+    depth: str
+    mesh: Mapping[str, object]
+    limit_seconds: float
+    settings: Settings | None = None
+
+
+def _cell(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
     return checked_report(make_step(row, folder, stages), None, stages)
 
 
-def _mesh(row: Family, mesh: Mapping, folder: Path, stages: Stages) -> dict:
+def _mesh(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
     from ..meshing.options import mesh_options
 
     made = make_step(row, folder, stages)
-    return checked_report(made, make_mesh(made, mesh_options(made.fabric, **mesh), stages), stages)
+    return checked_report(made, make_mesh(made, mesh_options(made.fabric, **work.mesh), stages), stages)
 
 
-DEPTHS: dict[str, Callable[[Family, Mapping, Path, Stages], dict] | None] = {
+def _tension(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
+    """The report of the cell that was loaded, and under ``tension`` the ends of curves: ``k=1.T11_N_per_yarn`` ..."""
+    from ..simulation.job import Solver
+    from ..simulation.run import run_case
+
+    solver = Solver(
+        threads=1, time_limit=0.8 * work.limit_seconds
+    )  # before the unit's own end, which ccx would survive
+    case, report = run_case("tension", row, work.settings, folder, solver, work.mesh, stages)
+    if not case["solver"]["finished"]:
+        raise SolverError(f"the solver {case['solver']['reason']}")
+    found = {f"k={float(at['k']):g}.{name}": at[name] for at in case["largest"] for name in at if name != "k"}
+    return report | {"tension": found | case["contact"]}
+
+
+DEPTHS: dict[str, Callable[[Family, Work, Path, Stages], dict] | None] = {
     "identify": None,  # whole tables at once, see fabric_cad.study.run
     "cell": _cell,
     "mesh": _mesh,
+    "tension": _tension,
 }
-"""How far a study goes: from a row, mesh keywords, a folder for files and a stopwatch to a report."""
+"""How far a study goes: from a row, what is done, a folder for files and a stopwatch to a report."""
 
 _ONE_AT_A_TIME = threading.Lock()
 """CadQuery and gmsh have one state a process: a worker of several threads runs one unit at a time."""
 
 
-def run_unit(row: Family, depth: str, mesh: Mapping, limit: float, keep: str | None) -> Outcome:
-    """Run a table of one row to a depth; ``keep`` names the folder for its files, which are dropped without it.
+def run_unit(row: Family, work: Work, keep: str | None) -> Outcome:
+    """Run a table of one row to its depth; ``keep`` names the folder for its files, which are dropped without it.
 
-    A unit that takes longer than ``limit`` s ends its process, whatever that is doing.
+    A unit that takes longer than its limit ends its process, whatever that is doing.
     """
-    with _ONE_AT_A_TIME, _ended_after(limit):
+    with _ONE_AT_A_TIME, _ended_after(work.limit_seconds):
         stages, start, used = Stages(), time.perf_counter(), time.process_time()
         try:
-            report = _kept(row, depth, mesh, keep, stages)
+            report = _kept(row, work, keep, stages)
         except InputError as error:
             return Outcome("refused", reason_of(error))
         except FabricCadError as error:
@@ -74,12 +101,12 @@ def run_unit(row: Family, depth: str, mesh: Mapping, limit: float, keep: str | N
         return Outcome("done", "", flat(report), costs | _memory())
 
 
-def _kept(row: Family, depth: str, mesh: Mapping, keep: str | None, stages: Stages) -> dict:
+def _kept(row: Family, work: Work, keep: str | None, stages: Stages) -> dict:
     if keep is None:
         with tempfile.TemporaryDirectory(prefix="fabric-cad-") as folder:
-            return DEPTHS[depth](row, mesh, Path(folder), stages)
+            return DEPTHS[work.depth](row, work, Path(folder), stages)
     with staged(Path(keep) / row.names[0]) as folder:
-        report = DEPTHS[depth](row, mesh, folder, stages)
+        report = DEPTHS[work.depth](row, work, folder, stages)
         write_report(report, folder)
         return report
 
