@@ -276,6 +276,9 @@ def test_the_commands_leave_their_files(tmp_path, capsys):
     said = capsys.readouterr()
     assert "T11 N/yarn" in said.out and "state 3 of 3" in said.err
     assert main(["shear", "plain_flat", *here, "--across", "4", "-q"]) == 0
+    (families / "simulation.toml").write_text("[tension]\nratios = [1]\npoints = 1\ngrid = 0\n")
+    assert main(["tension", "plain", *here, "--across", "4", "-q"]) == 0  # one curve spans no surface
+    assert (out / "plain" / "tension_curves.png").exists() and not (out / "plain" / "tension_surface.png").exists()
     folder = out / "plain_flat"
     for case, pictures in (
         ("tension", ("_curves", "_surface", "_normal", "_crushing", "_strain", "_pressure")),
