@@ -56,6 +56,22 @@ def test_what_is_wrong_is_named_with_its_place(tmp_path, text, said):
     assert str(error.value).startswith(str(tmp_path / "simulation.toml"))
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "[rows.plane.yarn]\nE1_MPa = 1.0\n",
+            r"simulation.toml:?\d*: rows.plane: no row is called so; did you mean plain\?",
+        ),
+        ("[rows]\nplain = 3\n", r"simulation.toml:2: rows.plain: is not a table"),
+    ],
+)
+def test_a_row_that_is_none_is_told(tmp_path, text, said):
+    (tmp_path / "plain.csv").write_text("name,weft_density_per_mm,weft_width_mm,weft_crimp\nplain,0.22,3.2,0.004\n")
+    with pytest.raises(InputError, match=said):
+        read(tmp_path, text)
+
+
 def test_all_that_is_wrong_is_told_at_once(tmp_path):
     with pytest.raises(InputError) as error:
         read(tmp_path, "[yarn]\nE1_MPa = 0\nE2_MPa = 'soft'\n[contact]\nrings = -1\n")

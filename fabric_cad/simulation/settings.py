@@ -7,8 +7,6 @@ differs for one row.
 from __future__ import annotations
 
 import math
-import re
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -17,6 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError, Problem
+from ..tables import Family, read_families
+from ..toml_files import read_toml
 
 FILE = "simulation.toml"
 
@@ -196,25 +196,24 @@ class _File:
 
     def __init__(self, path: Path) -> None:
         self.path = str(path)
-        self.content: dict = {}
         self.problems: list[Problem] = []
-        try:
-            self.text = path.read_text(encoding="utf-8-sig")
-            self.content = tomllib.loads(self.text)
-        except UnicodeDecodeError:
-            self.problems.append(Problem("is not UTF-8 text", self.path))
-        except tomllib.TOMLDecodeError as error:
-            line = re.search(r"at line (\d+)", str(error))
-            self.problems.append(Problem(str(error), self.path, int(line[1]) if line else None))
-        except OSError as error:
-            self.problems.append(Problem(f"cannot be read: {error.strerror}", self.path))
+        self.content, self.lines = read_toml(path)
         for table, keys in self.content.items():
             if table == "rows" and isinstance(keys, dict):
                 for row, tables in keys.items():
-                    for name, inner in tables.items() if isinstance(tables, dict) else ():
-                        self._check_table(name, inner, row)
+                    self._check_row(path.parent, row, tables)
             else:
                 self._check_table(table, keys, "")
+
+    def _check_row(self, families: Path, row: str, tables: object) -> None:
+        known = _row_names(families)
+        if row not in known and _near(row, known):  # a slip; what is like no row may be left of one
+            self.problems.append(self.problem("", f"rows.{row}", f"no row is called so{_near(row, known)}"))
+        if not isinstance(tables, dict):
+            self.problems.append(self.problem("", f"rows.{row}", "is not a table"))
+            return
+        for name, inner in tables.items():
+            self._check_table(name, inner, row)
 
     def _check_table(self, table: str, keys: object, row: str) -> None:
         if table not in _TABLES:
@@ -237,21 +236,17 @@ class _File:
             self.problems.append(self.problem(table, key, f"{value!r} {complaint}", row))
 
     def problem(self, table: str, key: str, message: str, row: str = "") -> Problem:
-        return Problem(message, self.path, self._line(table, key, row), key, row or None)
+        place = ".".join(part for part in (table, key) if part)
+        line = self.lines.get(f"rows.{row}.{place}", self.lines.get(place))
+        return Problem(message, self.path, line, key, row or None)
 
-    def _line(self, table: str, key: str, row: str) -> int | None:
-        """The line of a key or of a table's head, as well as a look at the text can tell."""
-        heads = {f"[{table}]", f"[rows.{row}.{table}]"} if table else {f"[{key}]", f"[rows.{row}.{key}]"}
-        inside = False
-        for number, line in enumerate(self.text.splitlines(), 1):
-            bare = line.split("#")[0].strip()
-            if bare.startswith("["):
-                inside = re.sub(r"[\s\"']", "", bare) in heads
-                if inside and not table:
-                    return number
-            elif inside and bare.split("=")[0].strip().strip("\"'") == key:
-                return number
-        return None
+
+def _row_names(families: Path) -> list[str]:
+    """Names of all rows of a folder of family tables, none where it has no sound one."""
+    try:
+        return [name for table in read_families(families).values() if isinstance(table, Family) for name in table.names]
+    except InputError:
+        return []
 
 
 def _near(name: str, known: list[str]) -> str:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import difflib
 import math
-import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +12,7 @@ from ..errors import InputError, Problem
 from ..pipeline import find_row
 from ..simulation.settings import read_settings
 from ..tables import MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
+from ..toml_files import read_toml
 from ..weaves import DIRECTIONS
 from .design import DESIGNS, RANDOM
 from .factors import Factor, Normal, Uniform, Values
@@ -51,35 +50,8 @@ def read_study(path: str | Path, families: str | Path = "families") -> Study:
 
     Raises :class:`InputError` with every problem of the file: its place, key, value and bound.
     """
-    path = Path(path)
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
-    try:
-        text = raw.decode("utf-8-sig")
-        content = tomllib.loads(text)
-    except UnicodeDecodeError as error:
-        raise InputError(Problem("not UTF-8 text", str(path), raw[: error.start].count(b"\n") + 1)) from error
-    except tomllib.TOMLDecodeError as error:
-        found = re.search(r"\(at line (\d+), column \d+\)", str(error))
-        message = f"not TOML: {str(error).split(' (at')[0]}"
-        raise InputError(Problem(message, str(path), int(found[1]) if found else None)) from error
-    return _Reader(path, content, key_lines(text)).read(families)
-
-
-def key_lines(text: str) -> dict[str, int]:
-    """Line number of each key of a TOML text by its dotted name, tables included."""
-    lines: dict[str, int] = {}
-    table = ""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if header := re.match(r"\s*\[+\s*([^\]]+?)\s*\]", line):
-            table = re.sub(r"[\s\"']", "", header[1])
-            lines.setdefault(table, number)
-        elif key := re.match(r"\s*([\w\-.\"']+)\s*=", line):
-            name = re.sub(r"[\"']", "", key[1])
-            lines.setdefault(f"{table}.{name}" if table else name, number)
-    return lines
+    content, lines = read_toml(path)
+    return _Reader(Path(path), content, lines).read(families)
 
 
 _KEYS = {

@@ -1,0 +1,44 @@
+"""TOML files as users write them: their content, and the line of every key for what is wrong with it."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+from .errors import InputError, Problem
+
+
+def read_toml(path: str | Path) -> tuple[dict, dict[str, int]]:
+    """Content of a TOML file, a byte-order mark passed over, and line numbers as of :func:`key_lines`.
+
+    Raises :class:`InputError`, with the line, where it cannot be read, is not UTF-8 or not TOML.
+    """
+    path = Path(path)
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
+    try:
+        text = raw.decode("utf-8-sig")
+        return tomllib.loads(text), key_lines(text)
+    except UnicodeDecodeError as error:
+        raise InputError(Problem("not UTF-8 text", str(path), raw[: error.start].count(b"\n") + 1)) from error
+    except tomllib.TOMLDecodeError as error:
+        found = re.search(r"\(at line (\d+), column \d+\)", str(error))
+        message = f"not TOML: {str(error).split(' (at')[0]}"
+        raise InputError(Problem(message, str(path), int(found[1]) if found else None)) from error
+
+
+def key_lines(text: str) -> dict[str, int]:
+    """Line number of each key of a TOML text by its dotted name, tables included."""
+    lines: dict[str, int] = {}
+    table = ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := re.match(r"\s*\[+\s*([^\]]+?)\s*\]", line):
+            table = re.sub(r"[\s\"']", "", header[1])
+            lines.setdefault(table, number)
+        elif key := re.match(r"\s*([\w\-.\"']+)\s*=", line):
+            name = re.sub(r"[\"']", "", key[1])
+            lines.setdefault(f"{table}.{name}" if table else name, number)
+    return lines
