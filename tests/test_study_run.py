@@ -1,5 +1,6 @@
 """Whole studies: tables, what is never run again, and what a kill leaves behind."""
 
+import csv
 import json
 import os
 import random
@@ -117,6 +118,11 @@ def test_a_mesh_study_on_a_cluster(here, cluster):
     assert (found["mesh.hexahedra"] == report["mesh"]["hexahedra"]).all()
     assert (found["mesh.min_scaled_jacobian"] > 0.2).all()
     assert (found["consistency.max_penetration_mm"] < 1e-12).all()
+    with open("build/study/costs.csv", newline="") as file:
+        costs = list(csv.DictReader(file))
+    assert [row["unit"] for row in costs] == ["0", "1", "2"]
+    assert all(float(row["total"]) > float(row["mesh"]) > 0 for row in costs)
+    assert all(100 < float(row["process_megabytes"]) < 1500 for row in costs)
     table = Path("build/study/table.parquet").read_bytes()
 
     again = run_study(study(cells()), scheduler=address)  # nothing is run again

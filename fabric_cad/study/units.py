@@ -25,7 +25,7 @@ from .figures import flat
 class Outcome:
     """What became of a unit: ``done``, ``refused`` (no fabric) or ``failed``, why, and its figures.
 
-    ``costs`` are s by stage and in all (``unit``), s of processor time (``processor``), and
+    ``costs`` are s by stage and in all (``total``), s of processor time (``processor``), and
     ``process_megabytes``, the most that the process it ran in has held so far.
     """
 
@@ -96,7 +96,7 @@ def run_unit(row: Family, work: Work, keep: str | None) -> Outcome:
             return Outcome("refused", reason_of(error))
         except FabricCadError as error:
             return Outcome("failed", str(error))
-        seconds = stages.seconds | {"unit": time.perf_counter() - start, "processor": time.process_time() - used}
+        seconds = stages.seconds | {"total": time.perf_counter() - start, "processor": time.process_time() - used}
         costs = {name: round(value, 4) for name, value in seconds.items()}
         return Outcome("done", "", flat(report), costs | _memory())
 
