@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from .errors import InputError
 from .identification import identify
+from .interrupts import uninterrupted
 from .scatter import propagate
 from .solved import SolvedFabric, SolvedTable, read_solved
 from .staging import staged
@@ -95,7 +96,7 @@ def make_step(row: Family, folder: Path, stages: Stages) -> Made:
         std = propagate(row, table).row(0) if row.scattered[0] else None
         table.write(folder / "solved.csv")
         fabric = read_solved(folder / "solved.csv")
-    with stages("load CadQuery"):
+    with stages("load CadQuery"), uninterrupted():
         from .cad import inspect_cell, read_step
         from .masters import build_cell
     step = folder / f"{name}.step"

@@ -5,14 +5,13 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-import signal
 import tempfile
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from .errors import FabricCadError, OutputError
+from .interrupts import uninterrupted
 
 _LEFTOVER = ".fabric-cad-"
 
@@ -34,7 +33,7 @@ def staged(target: Path) -> Iterator[Path]:
     try:
         with _output_errors(target):
             yield aside
-            with _uninterrupted():
+            with uninterrupted():
                 _move(aside, target)
     finally:
         shutil.rmtree(aside, ignore_errors=True)
@@ -90,19 +89,3 @@ def _alive(process: int) -> bool:
     except PermissionError:
         return True
     return True
-
-
-@contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Hold Ctrl-C back until the files are in place."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    pressed = []
-    before = signal.signal(signal.SIGINT, lambda *_: pressed.append(True))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if pressed:
-        raise KeyboardInterrupt

@@ -10,6 +10,7 @@ import numpy as np
 
 from .colours import COLOURS
 from .errors import OutputError
+from .interrupts import uninterrupted
 from .meshing.mesh import Mesh
 from .weaves import DIRECTIONS
 
@@ -36,9 +37,16 @@ _NEAR_ZERO = 0.2  # of the greatest value
 _TENSED, _UNKNOWN = (0.44, 0.46, 0.50), (0.78, 0.78, 0.78)
 
 
-def _grid(mesh: Mesh):
-    import pyvista
+def _pyvista():
+    """PyVista, which is loaded whole or not at all."""
+    with uninterrupted():
+        import pyvista
 
+    return pyvista
+
+
+def _grid(mesh: Mesh):
+    pyvista = _pyvista()
     return pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: mesh.hexahedra}, mesh.points)
 
 
@@ -95,7 +103,8 @@ def _described(mesh: Mesh):
 
 
 def _write(grid, path: str | Path) -> None:
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+    with uninterrupted():
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     Path(path).write_bytes(b"")  # raises where there is no writing at all, which VTK does not tell
     writer = vtkXMLUnstructuredGridWriter()
@@ -122,8 +131,7 @@ def _plotter(mesh: Mesh, **options):
 
 
 def _scene(**options):
-    import pyvista
-
+    pyvista = _pyvista()
     plotter = pyvista.Plotter(window_size=_SIZE, lighting="none", **options)
     plotter.set_background("white")
     return plotter
@@ -131,8 +139,7 @@ def _scene(**options):
 
 def _skin(mesh: Mesh, points: np.ndarray, yarns: Iterable[str]):
     """The skin of some yarns with its normals, creased at true edges, and the number of every point as ``node``."""
-    import pyvista
-
+    pyvista = _pyvista()
     wanted = set(yarns)
     quads = np.vstack([quads for name, quads in mesh.surfaces.items() if name.rsplit("_", 1)[0] in wanted])
     used, faces = np.unique(quads, return_inverse=True)
@@ -159,8 +166,7 @@ def _add_edges(plotter, skin, **options) -> None:
 
 def _light(plotter, points: np.ndarray) -> None:
     """Light from above and aside."""
-    import pyvista
-
+    pyvista = _pyvista()
     centre = points.mean(axis=0)
     extent = np.ptp(points, axis=0).max()
     for place, strength in (((-0.6, -1.0, 1.6), 0.85), ((1.5, 0.4, 0.8), 0.35), ((-0.3, 1.0, 0.5), 0.2)):

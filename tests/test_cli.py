@@ -259,8 +259,11 @@ def test_what_killed_runs_left_is_cleared(result):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="sends a POSIX signal")
-@pytest.mark.parametrize("stage", ["identify", "solids", "mesh"])
-def test_ctrl_c_halfway(here, stage):
+@pytest.mark.parametrize(
+    ("stage", "after"), [("identify", 0.05), ("identify", 0.5), ("identify", 1.0), ("solids", 0.05), ("mesh", 0.05)]
+)
+def test_ctrl_c_halfway(here, stage, after):
+    """Also while CadQuery is loaded, which follows the identification, and VTK, after the mesh."""
     Path("build/plain").mkdir(parents=True)
     Path("build/plain/plain.step").write_text("earlier")
     process = subprocess.Popen(
@@ -269,7 +272,7 @@ def test_ctrl_c_halfway(here, stage):
     for line in process.stderr:
         if line.split()[0] == stage:
             break
-    time.sleep(0.05)
+    time.sleep(after)
     process.send_signal(signal.SIGINT)
     rest = process.communicate(timeout=60)
     assert process.returncode == 1 and "stopped; earlier results are as they were" in rest[1]

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import BuildError
+from ..interrupts import uninterrupted
 from ..solved import SolvedFabric
 from ..weaves import yarns_of
 from .mesh import Mesh
@@ -28,11 +29,12 @@ _PLACE = 1e-6  # mm, by which a face's nodes are told apart
 @contextmanager
 def _session() -> Iterator:
     """gmsh with an empty model and its own options; started once a process and ended with it."""
-    import gmsh
+    with uninterrupted():
+        import gmsh
 
-    if not gmsh.isInitialized():
-        gmsh.initialize(["-nopopup"], readConfigFiles=False, interruptible=False)
-        atexit.register(_end, gmsh)
+        if not gmsh.isInitialized():
+            gmsh.initialize(["-nopopup"], readConfigFiles=False, interruptible=False)
+            atexit.register(_end, gmsh)
     try:
         gmsh.option.restoreDefaults()
         gmsh.option.setNumber("General.Terminal", 0)
