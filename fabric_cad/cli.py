@@ -353,8 +353,9 @@ def _shear(settings) -> int:
 
 def _simulate(settings, kind: str, make) -> int:
     """Run a case, or write its deck alone."""
+    from .cores import cores
     from .pipeline import Stages, find_row
-    from .simulation.job import Solver, cores
+    from .simulation.job import Solver
     from .simulation.report import summary
     from .simulation.run import write_case
     from .simulation.solver import find_solver

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,22 @@ class Problem:
         if self.row:
             text += f" (row {self.row})"
         return text
+
+
+def did_you_mean(name: str, known: Iterable[str], cutoff: float = 0.6) -> str:
+    """``; did you mean ...?`` with the nearest known name, nothing where none is as near as ``cutoff`` (0 to 1)."""
+    from difflib import get_close_matches
+
+    nearest = get_close_matches(name, list(known), n=1, cutoff=cutoff)
+    return f"; did you mean {nearest[0]}?" if nearest else ""
+
+
+def read_input(path: Path) -> bytes:
+    """The bytes of a user's file. Raises :class:`InputError` where it cannot be read."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
 
 
 class FabricCadError(Exception):

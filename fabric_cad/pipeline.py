@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .errors import InputError
+from .errors import InputError, did_you_mean
 from .identification import identify
 from .interrupts import uninterrupted
 from .scatter import propagate
@@ -48,8 +48,6 @@ def find_row(folder: str | Path, name: str) -> tuple[Family, tuple[InputError, .
     Raises :class:`InputError` where no sound table has the row, or its own table has
     anything wrong.
     """
-    from difflib import get_close_matches
-
     tables = read_families(folder)
     errors = {family: table for family, table in tables.items() if isinstance(table, InputError)}
     for family, table in tables.items():
@@ -59,8 +57,7 @@ def find_row(folder: str | Path, name: str) -> tuple[Family, tuple[InputError, .
         problems = [problem for error in errors.values() for problem in error.problems]
         raise InputError(problems)
     names = [each for table in tables.values() for each in table.names]
-    near = get_close_matches(name, names, n=1)
-    hint = f"; did you mean {near[0]}?" if near else ""
+    hint = did_you_mean(name, names)
     raise InputError(f"{folder}: no row is called {name!r}{hint} ('fabric-cad list' shows them all)")
 
 

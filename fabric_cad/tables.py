@@ -7,7 +7,6 @@ in it is listed in one :class:`~fabric_cad.errors.InputError`.
 from __future__ import annotations
 
 import csv
-import difflib
 import math
 import re
 from collections.abc import Sequence
@@ -16,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .errors import InputError, Problem
+from .errors import InputError, Problem, did_you_mean, read_input
 from .patterns import read_pattern
 from .weaves import DIRECTIONS, FAMILIES, Weave, pattern_faults, weave_of
 
@@ -229,11 +228,7 @@ class _TableReader:
 
     def records(self):
         """(line number, cells) of every line that holds something, header first."""
-        try:
-            raw = self.path.read_bytes()
-        except OSError as error:
-            self.wrong(f"cannot be read: {error.strerror}")
-            self.stop_if_wrong()
+        raw = read_input(self.path)
         try:
             text = raw.decode("utf-8-sig")
         except UnicodeDecodeError as error:
@@ -272,8 +267,7 @@ class _TableReader:
                 if header.count(column) > 1:
                     self.wrong("this column stands twice in the header", line, column)
                 continue
-            nearest = difflib.get_close_matches(column.lower(), known, n=1, cutoff=0.3)
-            hint = f"; did you mean {nearest[0]}?" if nearest else ""
+            hint = did_you_mean(column.lower(), known, cutoff=0.3)
             self.wrong(f"unknown column of {self.family}.csv{hint}", line, column or "(empty)")
         self.problems = list(dict.fromkeys(self.problems))
         for column in ("name", *self.whole):

@@ -6,7 +6,7 @@ import re
 import tomllib
 from pathlib import Path
 
-from .errors import InputError, Problem
+from .errors import InputError, Problem, read_input
 
 
 def read_toml(path: str | Path) -> tuple[dict, dict[str, int]]:
@@ -15,10 +15,7 @@ def read_toml(path: str | Path) -> tuple[dict, dict[str, int]]:
     Raises :class:`InputError`, with the line, where it cannot be read, is not UTF-8 or not TOML.
     """
     path = Path(path)
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
+    raw = read_input(path)
     try:
         text = raw.decode("utf-8-sig")
         return tomllib.loads(text), key_lines(text)

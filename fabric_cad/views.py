@@ -12,7 +12,7 @@ from .colours import COLOURS
 from .errors import OutputError
 from .interrupts import uninterrupted
 from .meshing.mesh import Mesh
-from .weaves import DIRECTIONS
+from .weaves import DIRECTIONS, direction_of
 
 _SIZE = (1600, 1200)
 _GLOSS = {"smooth_shading": True, "ambient": 0.32, "diffuse": 0.75, "specular": 0.15, "specular_power": 20}
@@ -96,7 +96,7 @@ def write_deformed_vtu(
 def _described(mesh: Mesh):
     """The mesh with yarn number and direction of every element."""
     grid = _grid(mesh)
-    direction = np.array([DIRECTIONS.index(name.split("_")[0]) for name in mesh.yarns])
+    direction = np.array([DIRECTIONS.index(direction_of(name)) for name in mesh.yarns])
     grid.cell_data["yarn"] = mesh.yarn.astype(np.int32) + 1
     grid.cell_data["direction"] = direction[mesh.yarn].astype(np.int8)
     return grid

@@ -138,6 +138,11 @@ def weave_of(family: str, cells: Mapping) -> Weave:
     return Weave(pattern=cells["pattern"])
 
 
+def direction_of(yarn: str) -> str:
+    """``weft`` or ``warp``, from the name of a yarn."""
+    return yarn.split("_")[0]
+
+
 @dataclass(frozen=True)
 class Yarn:
     """One yarn of the elementary cell and what it meets, crossing by crossing.

@@ -20,7 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from .errors import InputError, Problem
+from .errors import InputError, Problem, read_input
 from .patterns import written
 from .tables import MOST_YARNS, is_safe_name
 from .weaves import pattern_faults
@@ -134,10 +134,7 @@ class _Draft:
 
 def _sections(path: Path) -> dict[str, dict[str, str | None]]:
     """What stands in a draft's file, section by section."""
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
+    raw = read_input(path)
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:

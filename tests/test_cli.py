@@ -18,14 +18,6 @@ from fabric_cad.errors import BuildError, OutputError
 HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp"
 
 
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    """A folder with the shipped tables, as the current one."""
-    shutil.copytree(shipped_families(), tmp_path / "families")
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def run(*arguments, **options):
     return subprocess.run(
         [sys.executable, "-m", "fabric_cad", *arguments], capture_output=True, text=True, timeout=120, **options

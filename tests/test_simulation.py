@@ -64,7 +64,7 @@ def run(folder, mesh, loads, settings=None, name="job", at_once=False):
     deck.write_text(deck.read_text().replace("*END STEP", asked or "*END STEP"))
     if at_once:
         deck.write_text(deck.read_text().replace("*STATIC\n0.95,", "*STATIC\n1.,"))
-    job = run_job(deck, mesh, loads, solver())
+    job = run_job(deck, mesh, solver())
     assert job.run.finished, job.run.reason
     assert job.run.warnings == ()
     assert len(job.reached) == len(loads)
@@ -196,7 +196,7 @@ def alone(folder, law, strain, **options):
     # no warp is there to hold the yarn across, or to keep it from turning about itself
     keywords.insert(-1, Boundary(((first, 2, 0.0), (last, 2, 0.0))))
     write_keywords(keywords, folder / "yarn.inp")
-    job = run_job(folder / "yarn.inp", yarn, loads, solver())
+    job = run_job(folder / "yarn.inp", yarn, solver())
     assert job.run.finished, job.run.reason
     assert job.run.warnings == ()
     return job.reached[0].forces[0, 0], job.reached[0]
@@ -240,7 +240,7 @@ def test_compaction_resists_with_the_cube_of_the_crush(folder):
     text += "*NSET, NSET=top\n5, 6, 7, 8\n*BOUNDARY\n" + held + "bottom, 3, 3\n"
     output = "*NODE PRINT, NSET=top, TOTALS=ONLY\nRF\n"
     (folder / "crush.inp").write_text(text + step(f"*BOUNDARY\ntop, 3, 3, {crush}\n", output=output))
-    job = run_job(folder / "crush.inp", box("weft_1"), (), solver())
+    job = run_job(folder / "crush.inp", box("weft_1"), solver())
     assert job.run.warnings == ("*WARNING: no degrees of freedom in the model",)
     (total,) = [each for each in read_dat(folder / "crush.dat") if each.quantity == "RF"]
     assert total.values[2] == pytest.approx(LENGTH * hardening * crush**3, rel=1e-4)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fabrics import random_general_row, random_row, skin_of, table
+from fabrics import UNBALANCED, random_general_row, random_row, skin_of, table
 from hypothesis import given, settings
 from hypothesis import strategies as some
 from scipy.integrate import quad
@@ -146,16 +146,7 @@ def test_the_quadrature_of_this_test_knows_a_closed_form():
         ("pattern", PLAIN | {"pattern": "ou/uo"}),
         (
             "plain",
-            {
-                "name": "base",
-                "weft_density_per_mm": 0.25,
-                "weft_width_mm": 2.8,
-                "weft_crimp": 0.006,
-                "warp_density_per_mm": 0.22,
-                "warp_width_mm": 3.3,
-                "warp_crimp": 0.003,
-                "fabric_thickness_mm": 0.75,
-            },
+            UNBALANCED | {"name": "base", "fabric_thickness_mm": 0.75},
         ),
     ],
 )

@@ -4,7 +4,6 @@ import csv
 import json
 import os
 import random
-import shutil
 import signal
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fabric_cad.cli import main, shipped_families
+from fabric_cad.cli import main
 from fabric_cad.errors import OutputError
 from fabric_cad.pipeline import find_row, make_cell
 from fabric_cad.study import read_study, run_study
@@ -40,13 +39,6 @@ depth = "{depth}"
 weft_width_mm = {widths}
 """
 COARSE = "mesh = { across = 6, gap = 2 }"
-
-
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    shutil.copytree(shipped_families(), tmp_path / "families")
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def cells(depth="mesh", more=COARSE, widths=(2.8, 3.6, 4.4)):

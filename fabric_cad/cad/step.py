@@ -18,6 +18,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from ..colours import COLOURS
 from ..errors import BuildError
+from ..weaves import direction_of
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ def assemble(yarns: dict[str, cq.Solid]) -> Cell:
     """The cell of named yarns (``weft_1``, ..., ``warp_1``, ...)."""
     assembly = cq.Assembly(name="cell")
     for name, solid in yarns.items():
-        assembly.add(solid, name=name, color=cq.Color(*COLOURS[name.split("_")[0]]))
+        assembly.add(solid, name=name, color=cq.Color(*COLOURS[direction_of(name)]))
     return Cell(assembly)
 
 

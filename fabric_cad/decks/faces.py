@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS
+from ..weaves import DIRECTIONS, direction_of
 
 # corners of the faces S1 ... S6 of C3D8
 FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])
@@ -56,7 +56,7 @@ def touching_faces(mesh: Mesh, rings: int = 0) -> dict[str, tuple[np.ndarray, np
     faces = element_faces(mesh)
     found: dict[str, list] = {f"{direction}_{side}": [] for direction in DIRECTIONS for side in ("top", "bottom")}
     for yarn in mesh.yarns:
-        direction = yarn.split("_")[0]
+        direction = direction_of(yarn)
         touching, free = faces[f"{yarn}_contact"], faces.get(f"{yarn}_free")
         _, upward = _quads(mesh, touching)
         for side, chosen in (("top", upward > 0), ("bottom", upward <= 0)):
@@ -68,13 +68,23 @@ def touching_faces(mesh: Mesh, rings: int = 0) -> dict[str, tuple[np.ndarray, np
     return {name: tuple(map(np.concatenate, zip((none, none), *parts))) for name, parts in found.items()}
 
 
+def face_quads(mesh: Mesh, faces: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """Corner nodes (quads, 4) of faces given as elements and their sides (0: S1 ...)."""
+    elements, sides = faces
+    return mesh.hexahedra[elements[:, None], FACES[sides]]
+
+
+def area_vectors(mesh: Mesh, quads: np.ndarray) -> np.ndarray:
+    """Normals (quads, 3) of quadrilaterals, mm, as long as their area, mm2."""
+    corners = mesh.points[quads]
+    return np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]) / 2
+
+
 def _quads(mesh: Mesh, faces: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Corner nodes (quads, 4) of element faces and how far they look up: the sine of their normal's rise."""
-    elements, sides = faces
-    quads = mesh.hexahedra[elements[:, None], FACES[sides]]
-    outward = mesh.points[quads].mean(axis=1) - mesh.points[mesh.hexahedra[elements]].mean(axis=1)
-    corners = mesh.points[quads]
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    quads = face_quads(mesh, faces)
+    outward = mesh.points[quads].mean(axis=1) - mesh.points[mesh.hexahedra[faces[0]]].mean(axis=1)
+    normal = area_vectors(mesh, quads)
     normal *= np.sign((normal * outward).sum(axis=1))[:, None]
     return quads, normal[:, 2] / np.linalg.norm(normal, axis=1)
 
@@ -84,7 +94,7 @@ def _widened(mesh: Mesh, touching, free, top: bool, rings: int) -> tuple[np.ndar
     quads, upward = _quads(mesh, free)
     candidates = (upward if top else -upward) > _UPRIGHT
     reached = np.zeros(len(mesh.points), dtype=bool)
-    reached[mesh.hexahedra[touching[0][:, None], FACES[touching[1]]]] = True
+    reached[face_quads(mesh, touching)] = True
     chosen = np.zeros(len(quads), dtype=bool)
     for _ in range(rings if len(touching[0]) else 0):
         chosen |= candidates & reached[quads].any(axis=1)

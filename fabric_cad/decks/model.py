@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import BuildError
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS
+from ..weaves import DIRECTIONS, direction_of
 from .cell import ORIENTATION, cell_keywords
 from .faces import touching_faces
 from .keywords import (
@@ -124,7 +124,7 @@ def periodic_equations(mesh: Mesh, period: tuple[float, float], reference: dict[
     from scipy.spatial import cKDTree
 
     for yarn in mesh.yarns:
-        direction = yarn.split("_")[0]
+        direction = direction_of(yarn)
         shift = np.zeros(3)
         axis = DIRECTIONS.index(direction)
         shift[axis] = period[axis]

@@ -5,18 +5,18 @@ mesh, loads --model--> <stem>.inp --ccx--> <stem>.frd, .dat, .log --readers--> J
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from ..decks.faces import FACES, touching_faces
+from ..cores import cores
+from ..decks.faces import area_vectors, face_quads, touching_faces
 from ..decks.keywords import EngineeringConstants, write_keywords
 from ..decks.model import Load, Touch, model_keywords
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS
+from ..weaves import DIRECTIONS, direction_of
 from .energy import cell_energy
 from .penetration import penetration
 from .results import State, read_dat, read_frd
@@ -24,11 +24,6 @@ from .settings import Settings, YarnLaw
 from .solver import Progress, Run, find_solver, run_solver
 
 _STRESS_FREE = 1e-6  # MPa: contact pressure above which a node counts as touching
-
-
-def cores() -> int:
-    """Processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @dataclass(frozen=True)
@@ -46,7 +41,7 @@ class Solver:
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """One load that was reached.
+    """A load that was reached, or rest.
 
     ``forces`` (2, 3) N: sum over the wefts' ends and over the warps' ends of what the neighbouring
     cells pull with; ``displacement`` (nodes, 3) mm; ``strain`` (nodes, 6) Green's, axes xx, yy, zz,
@@ -55,7 +50,6 @@ class Reached:
     pressure, both NaN where yarns are tied.
     """
 
-    load: Load
     forces: np.ndarray
     displacement: np.ndarray
     strain: np.ndarray
@@ -67,8 +61,7 @@ class Reached:
 def at_rest(mesh: Mesh) -> Reached:
     """The cell before any load: nothing moved, nothing pressed."""
     zero = np.zeros(len(mesh.points))
-    none = Load("rest", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    return Reached(none, np.zeros((2, 3)), np.zeros((len(zero), 3)), np.zeros((len(zero), 6)), zero, 0.0, np.nan)
+    return Reached(np.zeros((2, 3)), np.zeros((len(zero), 3)), np.zeros((len(zero), 6)), zero, 0.0, np.nan)
 
 
 @dataclass(frozen=True)
@@ -98,7 +91,7 @@ def write_model(
     write_keywords(model_keywords(mesh, period, constants, law.hardening, touch, loads, title), path, dialect)
 
 
-def run_job(deck: Path, mesh: Mesh, loads: tuple[Load, ...], solver: Solver) -> Job:
+def run_job(deck: Path, mesh: Mesh, solver: Solver) -> Job:
     """Run a deck of :func:`write_model` and read what it reached; of a job that stops early, what came before.
 
     Raises :class:`SolverError` where the solver cannot be started.
@@ -119,11 +112,11 @@ def run_job(deck: Path, mesh: Mesh, loads: tuple[Load, ...], solver: Solver) -> 
         if abs(state.time - state.step) > 1e-4:
             continue  # a step's load reached in part
         pulls = np.array([forces[state.step].get(f"{name}_ends", np.full(3, np.nan)) for name in DIRECTIONS])
-        reached.append(_reached(mesh, loads[state.step - 1], state, pulls, weights))
+        reached.append(_reached(mesh, state, pulls, weights))
     return Job(run, tuple(reached))
 
 
-def _reached(mesh: Mesh, load: Load, state: State, forces: np.ndarray, weights: np.ndarray) -> Reached:
+def _reached(mesh: Mesh, state: State, forces: np.ndarray, weights: np.ndarray) -> Reached:
     count = len(mesh.points)
     contact = state.fields.get("CONTACT")
     pressure = np.full(count, np.nan)
@@ -136,18 +129,15 @@ def _reached(mesh: Mesh, load: Load, state: State, forces: np.ndarray, weights: 
         overclosure = max(0.0, float(-np.nanmin(opening)))
         share = 1 - float(weights[~(pressure > _STRESS_FREE)].sum() / weights.sum())
     displacement, strain = state.fields["DISP"][:count], state.fields["TOSTRAIN"][:count]
-    return Reached(load, forces, displacement, strain, pressure, overclosure, share)
+    return Reached(forces, displacement, strain, pressure, overclosure, share)
 
 
 def _patch_areas(mesh: Mesh) -> np.ndarray:
     """Area (nodes,) of the wefts' contact patches, mm2, shared among the corners of their faces."""
-    areas = np.zeros(len(mesh.points))
+    areas, patches = np.zeros(len(mesh.points)), touching_faces(mesh)
     for name in ("weft_top", "weft_bottom"):
-        elements, sides = touching_faces(mesh)[name]
-        quads = mesh.hexahedra[elements[:, None], FACES[sides]]
-        corners = mesh.points[quads]
-        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-        np.add.at(areas, quads, np.linalg.norm(normal, axis=1)[:, None] / 8)
+        quads = face_quads(mesh, patches[name])
+        np.add.at(areas, quads, np.linalg.norm(area_vectors(mesh, quads), axis=1)[:, None] / 4)
     return areas
 
 
@@ -182,11 +172,17 @@ def transverse_strains(mesh: Mesh, strain: np.ndarray) -> tuple[np.ndarray, np.n
     return tuple(np.einsum("ni,nij,nj->n", axis, tensor, axis) for axis in axes)
 
 
+def tension_per_yarn(mesh: Mesh, pulls: Sequence[float]) -> dict[str, float]:
+    """Columns ``T11_N_per_yarn`` and ``T22_N_per_yarn`` of what all wefts and all warps pull with, N."""
+    counts = [sum(name.startswith(direction) for name in mesh.yarns) for direction in DIRECTIONS]
+    return {f"{name}_N_per_yarn": pull / count for name, pull, count in zip(("T11", "T22"), pulls, counts)}
+
+
 def widths(mesh: Mesh, points: np.ndarray) -> tuple[float, float]:
     """Mean width (mm) of the wefts and of the warps at deformed ``points`` (nodes, 3): their extent across."""
     extents: dict[str, list[float]] = {name: [] for name in DIRECTIONS}
     for number, yarn in enumerate(mesh.yarns):
-        direction = yarn.split("_")[0]
+        direction = direction_of(yarn)
         nodes = np.unique(mesh.hexahedra[mesh.yarn == number])
         extents[direction].append(float(np.ptp(points[nodes, 1 - DIRECTIONS.index(direction)])))
     return tuple(float(np.mean(extents[name])) for name in DIRECTIONS)

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS
+from ..weaves import DIRECTIONS, direction_of
 from .isoparametric import distance_to_quads, inside_hexahedra
 
 KINDS = ("crossing", "parallel")
@@ -101,7 +101,7 @@ def _check(name: str, array: np.ndarray, shape: tuple[int, ...]) -> None:
 
 
 def _direction(name: str) -> int:
-    return DIRECTIONS.index(name.split("_")[0])
+    return DIRECTIONS.index(direction_of(name))
 
 
 class _Boxed:

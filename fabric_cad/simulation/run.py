@@ -14,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ..decks.model import Load
 from ..errors import SolverError
 from ..meshing.mesh import Mesh
 from ..pipeline import Stages
@@ -60,7 +59,7 @@ def write_case(
     name, settings = row.names[0], read_settings(families, row.names[0])
     with staged(Path(out) / name) as folder:
         case = _prepared(kind, row, settings, folder, mesh or {}, stages or Stages())
-        return [Path(out) / name / deck.name for deck, _ in _decks(case, dialect)]
+        return [Path(out) / name / deck.name for deck in _decks(case, dialect)]
 
 
 def _make(
@@ -93,9 +92,9 @@ def run_case(
     """
     case = _prepared(kind, row, settings, folder, mesh, stages)
     jobs: list[Job] = []
-    for deck, loads in _decks(case, "calculix"):
+    for deck in _decks(case, "calculix"):
         with stages(f"solve {deck.stem}"):
-            jobs.append(run_job(deck, case.cell.mesh, loads, solver))
+            jobs.append(run_job(deck, case.cell.mesh, solver))
         if not jobs[-1].run.finished:
             break
     rows, found = _WORK[kind](case, jobs)
@@ -111,8 +110,8 @@ def _prepared(kind: str, row: Family, settings: Settings, folder: Path, mesh: Ma
         return Case(kind, loaded_cell(row, settings, mesh, Path(scratch), stages), settings, folder, stages)
 
 
-def _decks(case: Case, dialect: str) -> list[tuple[Path, tuple[Load, ...]]]:
-    """Write the case's decks; their places and loads."""
+def _decks(case: Case, dialect: str) -> list[Path]:
+    """Write the case's decks; their places."""
     cell, settings, period = case.cell, case.settings, case.cell.fabric.period
     if case.kind == "tension":
         runs = [tension_loads(period, path) for path in paths(settings.tension, settings.contact)]
@@ -124,7 +123,7 @@ def _decks(case: Case, dialect: str) -> list[tuple[Path, tuple[Load, ...]]]:
             deck = case.path(f"_{at}.inp" if len(runs) > 1 else ".inp")
             title = f"{case.kind} of the elementary cell of {cell.fabric.name}"
             write_model(deck, cell.mesh, period, settings, loads, title, dialect)
-            decks.append((deck, loads))
+            decks.append(deck)
     return decks
 
 
@@ -136,12 +135,11 @@ def _tension(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
     reached = [at_rest(mesh), *(each for job in jobs for each in job.reached)]
     vectors = [(1 + np.array(state))[:, None] * cell_vectors(period, 0.0) for state in states]
     conditions = _conditions(case, reached, vectors)
-    rows = [tension_row(mesh, period, *of) for of in zip(states, reached, conditions)]
+    rows = by_curve([tension_row(mesh, period, *of) for of in zip(states, reached, conditions)], tension)
     if drawn := _valid(case, zip(states[1:], reached[1:]), conditions[1:]):
         with case.stages("pictures"):
-            _draw_tension(case, by_curve(rows, tension))
+            _draw_tension(case, rows)
             _draw_cell(case, max(drawn, key=lambda of: (min(of[0]), max(of[0])))[1])
-    rows = by_curve(rows, tension)
     ends = {row["k"]: row for row in rows if not math.isnan(row["k"])}  # the last state of every curve
     return rows, {"largest": [plain(row) for row in ends.values()]}
 

@@ -9,12 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError, Problem
+from ..errors import InputError, Problem, did_you_mean
 from ..tables import Family, read_families
 from ..toml_files import read_toml
 
@@ -207,8 +206,8 @@ class _File:
 
     def _check_row(self, families: Path, row: str, tables: object) -> None:
         known = _row_names(families)
-        if row not in known and _near(row, known):  # a slip; what is like no row may be left of one
-            self.problems.append(self.problem("", f"rows.{row}", f"no row is called so{_near(row, known)}"))
+        if row not in known and did_you_mean(row, known):  # a slip; what is like no row may be left of one
+            self.problems.append(self.problem("", f"rows.{row}", f"no row is called so{did_you_mean(row, known)}"))
         if not isinstance(tables, dict):
             self.problems.append(self.problem("", f"rows.{row}", "is not a table"))
             return
@@ -217,7 +216,9 @@ class _File:
 
     def _check_table(self, table: str, keys: object, row: str) -> None:
         if table not in _TABLES:
-            self.problems.append(self.problem("", table, f"no such table{_near(table, [*_TABLES, 'rows'])}", row))
+            self.problems.append(
+                self.problem("", table, f"no such table{did_you_mean(table, [*_TABLES, 'rows'])}", row)
+            )
         elif not isinstance(keys, dict):
             self.problems.append(self.problem("", table, "is not a table", row))
         else:
@@ -227,7 +228,7 @@ class _File:
     def _check(self, table: str, key: str, value: object, row: str) -> None:
         checks = _CHECKS[table]
         if key not in checks:
-            self.problems.append(self.problem(table, key, f"no such key in [{table}]{_near(key, list(checks))}", row))
+            self.problems.append(self.problem(table, key, f"no such key in [{table}]{did_you_mean(key, checks)}", row))
             return
         kind, sound, complaint = checks[key]
         number = isinstance(value, (int, float)) and not isinstance(value, bool)
@@ -247,8 +248,3 @@ def _row_names(families: Path) -> list[str]:
         return [name for table in read_families(families).values() if isinstance(table, Family) for name in table.names]
     except InputError:
         return []
-
-
-def _near(name: str, known: list[str]) -> str:
-    near = get_close_matches(name, known, n=1)
-    return f"; did you mean {near[0]}?" if near else ""

@@ -12,8 +12,7 @@ import numpy as np
 
 from ..decks.model import Load
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS
-from .job import Reached
+from .job import Reached, tension_per_yarn
 from .settings import ShearCase
 
 
@@ -54,7 +53,6 @@ def shear_row(
 
     ``force_N_per_mm`` is the moment per area of the cell: the force along a side, per mm of it.
     """
-    yarns = [sum(name.startswith(direction) for name in mesh.yarns) for direction in DIRECTIONS]
     couple = moment(period, angle, strain, reached.forces)
     vectors = cell_vectors(period, angle, strain)
     pulls = (reached.forces * vectors).sum(axis=1) / np.linalg.norm(vectors, axis=1)
@@ -62,8 +60,7 @@ def shear_row(
         "angle_deg": angle,
         "moment_N_mm": couple,
         "force_N_per_mm": couple / (period[0] * period[1]),
-        "T11_N_per_yarn": pulls[0] / yarns[0],
-        "T22_N_per_yarn": pulls[1] / yarns[1],
+        **tension_per_yarn(mesh, pulls),
         "thickness_mm": float(np.ptp(mesh.points[:, 2] + reached.displacement[:, 2])),
         **condition,
     }

@@ -13,8 +13,7 @@ import numpy as np
 
 from ..decks.model import Load
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS
-from .job import Reached, widths
+from .job import Reached, tension_per_yarn, widths
 from .settings import ContactLaw, TensionCase
 
 _SAME = 1e-9  # by which two strains may differ and be one state
@@ -76,7 +75,6 @@ def tension_row(
     mesh: Mesh, period: tuple[float, float], state: tuple[float, float], reached: Reached, condition: dict[str, float]
 ) -> dict[str, float]:
     """The line of ``tension.csv`` for one (E11, E22), its k still open; ``condition`` as of :func:`.job.condition`."""
-    yarns = [sum(name.startswith(direction) for name in mesh.yarns) for direction in DIRECTIONS]
     pulls = reached.forces[0, 0], reached.forces[1, 1]
     points = mesh.points + reached.displacement
     before, after = ((float(np.ptp(places[:, 2])), *widths(mesh, places)) for places in (mesh.points, points))
@@ -85,8 +83,7 @@ def tension_row(
         "k": math.nan,
         "E11": state[0],
         "E22": state[1],
-        "T11_N_per_yarn": pulls[0] / yarns[0],
-        "T22_N_per_yarn": pulls[1] / yarns[1],
+        **tension_per_yarn(mesh, pulls),
         "T11_N_per_mm": pulls[0] / period[1],
         "T22_N_per_mm": pulls[1] / period[0],
         **{f"{name}_mm": value for name, value in zip(sizes, after)},

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import InputError, Problem
+from ..errors import InputError, Problem, did_you_mean
 from ..pipeline import find_row
 from ..simulation.settings import read_settings
 from ..tables import MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
@@ -97,8 +96,7 @@ class _Reader:
         self.problems.append(Problem(message, str(self.path), line, shown or key))
 
     def unknown(self, name: str, known, key: str, what: str) -> None:
-        nearest = difflib.get_close_matches(name.lower(), known, n=1, cutoff=0.3)
-        self.wrong(f"unknown {what}{f'; did you mean {nearest[0]}?' if nearest else ''}", key, name)
+        self.wrong(f"unknown {what}{did_you_mean(name.lower(), known, cutoff=0.3)}", key, name)
 
     def of_kind(self, content: Mapping, keys: Mapping[str, type], prefix: str = "") -> dict:
         """The values that are of their kind; the others, and unknown keys, are problems."""
@@ -121,8 +119,7 @@ class _Reader:
             self.wrong(f"{self.path.stem!r} cannot name a folder of results; letters, digits, '_' and '-' only", "")
         for key, known in (("design", DESIGNS), ("depth", DEPTHS)):
             if key in found and found[key] not in known:
-                nearest = difflib.get_close_matches(found[key], known, n=1, cutoff=0.3)
-                hint = f"; did you mean {nearest[0]}?" if nearest else ""
+                hint = did_you_mean(found[key], known, cutoff=0.3)
                 self.wrong(f"{found.pop(key)!r} is none of {', '.join(known)}{hint}", key)
         design, depth = found.get("design"), found.get("depth", "identify")
         self.check_samples(found, design)
@@ -206,8 +203,7 @@ class _Reader:
         for column, value in content.items():
             key, shown = f"factors.{column}", f"factor {column}"
             if column not in known:
-                nearest = difflib.get_close_matches(column.lower(), known, n=1)
-                hint = f"; did you mean {nearest[0]}?" if nearest else ""
+                hint = did_you_mean(column.lower(), known)
                 self.wrong(f"no column of {base.family}.csv that can vary{hint}", key, shown)
                 continue
             same = kept.setdefault(kept_column(column)[0], column)
@@ -268,8 +264,8 @@ class _Reader:
         given = {name: each for name, each in value.items() if name != "distribution"}
         for name, each in given.items():
             if name not in _FACTOR_KEYS[kind]:
-                nearest = difflib.get_close_matches(name, _FACTOR_KEYS[kind], n=1, cutoff=0.3)
-                hint = f"; did you mean {nearest[0]}?" if nearest else f"; those are {', '.join(_FACTOR_KEYS[kind])}"
+                those = f"; those are {', '.join(_FACTOR_KEYS[kind])}"
+                hint = did_you_mean(name, _FACTOR_KEYS[kind], cutoff=0.3) or those
                 self.wrong(f"{name}: unknown key{hint}", f"{key}.{name}", shown)
             elif not _is(each, int if name == "steps" else float):
                 self.wrong(f"{name}: {each!r} is not {_KINDS[int if name == 'steps' else float]}", key, shown)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from multiprocessing import resource_tracker
 
+from ..cores import cores
 from ..errors import FabricCadError, InputError
 
 _MISSING = "a study of cells needs dask.distributed: pip install 'fabric-cad[study]'"
@@ -122,7 +123,7 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator:
             )
             stack.enter_context(cluster)
             cluster.sync(_leave_interrupts_alone)
-            cluster.scale(workers or _cores())
+            cluster.scale(workers or cores())
             client = Client(cluster)
         yield stack.enter_context(client)
 
@@ -132,8 +133,3 @@ async def _leave_interrupts_alone() -> None:
     if hasattr(signal, "pthread_sigmask"):
         resource_tracker.ensure_running()  # would lift the mask when it is started with the first worker
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-
-
-def _cores() -> int:
-    """Cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

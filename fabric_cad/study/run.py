@@ -82,12 +82,12 @@ def run_study(
         table, refused = study_rows(study.base, samples)
         reasons = {at: reason_of(InputError(problem)) for at, problem in refused.items()}
         good = np.delete(np.arange(len(table)), list(refused))
-        found = identify_rows(table.take(good) if refused else table)
+        part = table.take(good) if refused else table
+        found = identify_rows(part)
         reasons |= {int(good[at]): reason_of(InputError(problem)) for at, problem in found.refused.items()}
         if study.work.depth == "identify":
-            part = table.take(good) if refused else table
             figures = _spread(identified_figures(part, found), good[found.rows], len(table))
-            status, before = ["done"] * len(table), 0
+            status = ["done"] * len(table)
             for at in reasons:
                 status[at] = "refused"
             costs, finished = {}, written == digest
