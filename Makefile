@@ -1,8 +1,12 @@
 # Every target that needs the environment makes it first, from the pinned and hashed requirements.lock.
 
 PYTHON ?= python3
-WEAVE ?= twill32
 STUDY ?= families/measured.toml
+
+# make itself predefines WEAVE (for CWEB), so that ?= would never apply
+ifeq ($(origin WEAVE),default)
+WEAVE := twill32
+endif
 OPTIONS ?=
 BIN := .venv/bin
 READY := .venv/.ready
