@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
-from . import __version__
-from .errors import FabricCadError, InputError, OutputError
+from . import __version__, terminal
+from .errors import FabricCadError, InputError, OutputError, did_you_mean
+from .terminal import complain, say
 
 _DESCRIPTION = """\
 From a few numbers measured on a woven fabric to a CAD model and a hexahedral mesh of its
@@ -19,7 +22,7 @@ Fabrics are rows of the family tables plain.csv, twill.csv, satin.csv and, for a
 pattern.csv (lengths in mm): yarn density and width, and crimps or thicknesses. 'fabric-cad init'
 puts tables to start from into ./families.
 """
-_EPILOG = "exit status: 0 done, 2 bad input or usage, 1 anything else"
+_EPILOG = "exit status: 0 done, 2 bad input or usage, 1 anything else; of several rows the highest of theirs"
 
 _MESH = (
     ("size", float, "MM", "target element size in mm; numbers given below win over it"),
@@ -35,14 +38,44 @@ _MESH = (
 )
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser that names the nearest known word where it does not know one."""
+
+    options: set[str] = set()
+    """Every option of every command."""
+
+    def add_argument(self, *names, **more):
+        self.options.update(name for name in names if name.startswith("--"))
+        return super().add_argument(*names, **more)
+
+    def _print_message(self, message: str, file=None) -> None:
+        """As the one of argparse, which takes a help that is lost for one that was read."""
+        if message:
+            say(message, end="") if file is sys.stdout else complain(message, end="")
+
+    def error(self, message: str):
+        if wrong := re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)", message):
+            message += did_you_mean(wrong[1], re.findall(r"[\w-]+", wrong[2]))
+        elif wrong := re.match(r"unrecognized arguments: (--[^\s=]+)", message):
+            message += did_you_mean(wrong[1], self.options)
+        super().error(message)
+
+
 def _parser() -> argparse.ArgumentParser:
-    common = argparse.ArgumentParser(add_help=False)
+    common = _Parser(add_help=False)
     common.add_argument(
         "--families", metavar="DIR", default=argparse.SUPPRESS, help="folder of the family tables (default: families)"
     )
     common.add_argument("--out", metavar="DIR", default=argparse.SUPPRESS, help="folder for results (default: build)")
-    common.add_argument("-q", "--quiet", action="store_true", default=argparse.SUPPRESS, help="say nothing but errors")
-    parser = argparse.ArgumentParser(
+    common.add_argument(
+        "-q",
+        "--quiet",
+        action="store_true",
+        default=argparse.SUPPRESS,
+        help="no progress, notes and summaries of what files hold: only what list, validate and wif exist "
+        "to print, warnings and errors",
+    )
+    parser = _Parser(
         prog="fabric-cad",
         description=_DESCRIPTION,
         epilog=_EPILOG,
@@ -54,16 +87,24 @@ def _parser() -> argparse.ArgumentParser:
 
     def command(name: str, run, text: str, **more) -> argparse.ArgumentParser:
         added = commands.add_parser(name, parents=[common], help=text, description=text, epilog=_EPILOG, **more)
-        added.set_defaults(run=run)
+        added.set_defaults(run=run, usage_error=added.error)
         return added
+
+    def rows(added: argparse.ArgumentParser, every: bool = True) -> None:
+        """Arguments for the rows a command works on, one after the other."""
+        added.add_argument("rows", metavar="ROW", nargs="*", help="names of rows of any family table")
+        if every:
+            added.add_argument("--all", action="store_true", help="every row of every family table")
+        else:
+            added.set_defaults(all=False)
 
     command("list", _list, "list every row with its weave, its model and what identifies it")
     command("solve", _solve, "solve every row of every table into OUT/families/<family>.csv")
     command(
         "validate", _validate, "compare what rows measure beyond need with the model; propagate their *_std columns"
     )
-    cell = command("cell", _cell, "make a row's STEP, mesh, deck, picture and report in OUT/<row>")
-    cell.add_argument("row", metavar="ROW", help="name of a row of any family table")
+    cell = command("cell", _cell, "make the STEP, mesh, deck, picture and report of rows, each in OUT/<row>")
+    rows(cell)
     for name, kind, metavar, text in _MESH:
         cell.add_argument(f"--{name}", type=kind, metavar=metavar, help=text)
     cell.add_argument(
@@ -77,7 +118,7 @@ def _parser() -> argparse.ArgumentParser:
         ("shear", _shear, "shear a row's cell with CalculiX: moment and force against the angle"),
     ):
         case = command(name, run, f"{text}; materials and loads: FAMILIES/simulation.toml")
-        case.add_argument("row", metavar="ROW", help="name of a row of any family table")
+        rows(case)
         for option, kind, metavar, explained in _MESH:
             coarser = explained.split(" (default")[0] + (
                 " (default: simulation.toml)" if "(default" in explained else ""
@@ -104,7 +145,7 @@ def _parser() -> argparse.ArgumentParser:
     study.add_argument("--scheduler", metavar="ADDRESS", help="a running Dask cluster, e.g. tcp://host:8786")
     study.add_argument("--workers", type=_count, metavar="N", help="processes on this machine (default: one a core)")
     show = command("show", _show, "show a row's cell in a window; makes it first if it is not there")
-    show.add_argument("row", metavar="ROW", help="name of a row of any family table")
+    rows(show, every=False)
     wif = command("wif", _wif, "print a weaving draft (.wif) as a row to paste into pattern.csv")
     wif.add_argument("draft", metavar="DRAFT.wif", help="a draft with a tie-up and treadling, or a liftplan")
     wif.add_argument("--name", required=True, metavar="NAME", help="name of the row")
@@ -119,31 +160,52 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; returns its exit status."""
+    terminal.prepare()
+    try:
+        status = _run(arguments)
+    except SystemExit as stopped:  # --help, --version and wrong usage
+        if lost := terminal.finish():
+            complain(lost)
+            raise SystemExit(1) from stopped
+        raise
+    except BrokenPipeError:
+        status = 1
+    except BaseException as error:
+        status, sentence = _told(error)
+        complain(sentence)
+    lost = terminal.finish()
+    if lost:
+        complain(lost)
+    return status if lost is None else status or 1
+
+
+def _run(arguments: list[str] | None) -> int:
     parsed = _parser().parse_args(arguments)
     settings = vars(parsed)
     settings.setdefault("families", "families")
     settings.setdefault("out", "build")
     settings.setdefault("quiet", False)
     try:
-        status = parsed.run(parsed)
-        sys.stdout.flush()
-        return status
-    except FabricCadError as error:
-        print(error, file=sys.stderr)
-        return error.exit_status
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader has gone; nothing to flush to it
-        return 1
-    except BaseException as error:
-        if library := _missing_library(error):
-            print(
-                f"the system lacks the library {library}; the README lists what a bare container lacks", file=sys.stderr
-            )
-            return 1
-        if not _is_interrupt(error):
-            raise
-        print("\nstopped; earlier results are as they were", file=sys.stderr)
-        return 1
+        os.getcwd()
+    except OSError as error:
+        raise OutputError("the current folder is gone (deleted, or moved away); change to one that is there") from error
+    return parsed.run(parsed)
+
+
+def _told(error: BaseException) -> tuple[int, str]:
+    """Exit status and sentence for what went wrong. Raises the error again where it is a fault of the program."""
+    if isinstance(error, FabricCadError):
+        return error.exit_status, str(error)
+    if library := _missing_library(error):
+        return 1, f"the system lacks the library {library}; the README lists what a bare container lacks"
+    if _is_interrupt(error):
+        return 1, "\nstopped; earlier results are as they were"
+    if isinstance(error, MemoryError):
+        return 1, "out of memory; earlier results are as they were"
+    if isinstance(error, OSError):
+        place = f"{error.filename}: " if error.filename else ""
+        return 1, f"{place}{error.strerror or error}"
+    raise error
 
 
 def _missing_library(error: BaseException) -> str | None:
@@ -174,17 +236,17 @@ class _Progress:
         if self.quiet or (seconds is None and not self.terminal):
             return
         if seconds is None:
-            print(f"\r\033[K  {name} ...", end="", file=sys.stderr, flush=True)
+            complain(f"\r\033[K  {name} ...", end="")
         else:
             start = "\r\033[K" if self.terminal else ""
-            print(f"{start}  {name:14}{seconds:6.2f} s", file=sys.stderr, flush=True)
+            complain(f"{start}  {name:14}{seconds:6.2f} s")
 
     def solver(self, at) -> None:
         """An increment of a solver job, as :class:`fabric_cad.simulation.solver.Progress`."""
         if not self.quiet:
             start, end = ("\r\033[K", "") if self.terminal else ("", "\n")
             text = f"  state {at.step} of {at.steps}, increment {at.increment}: {100 * at.load:.0f} % of its load"
-            print(f"{start}{text}", end=end, file=sys.stderr, flush=True)
+            complain(f"{start}{text}", end=end)
 
 
 def _tables(settings) -> tuple[dict, list[InputError]]:
@@ -227,8 +289,7 @@ def _list(settings) -> int:
                     f"{columns['fabric_thickness_mm'][at]:.4g}",
                 )
             )
-    if not settings.quiet:
-        _print_table(lines)
+    _print_table(lines)
     _raise(errors)
     return 0
 
@@ -236,7 +297,7 @@ def _list(settings) -> int:
 def _print_table(lines: list[tuple[str, ...]]) -> None:
     widths = [max(map(len, column)) for column in zip(*lines)]
     for line in lines:
-        print("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip())
+        say("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip())
 
 
 def _solve(settings) -> int:
@@ -249,7 +310,7 @@ def _solve(settings) -> int:
             table.write(aside / f"{family}.csv")
     if not settings.quiet:
         for family, (_, table) in solved.items():
-            print(f"{target / family}.csv: {len(table)} rows")
+            say(f"{target / family}.csv: {len(table)} rows")
             _print_notes(table)
     _raise(errors)
     return 0
@@ -260,7 +321,7 @@ def _print_notes(table) -> None:
     columns = table.columns
     for at, name in enumerate(columns["name"]):
         if columns["other_weft_thickness_mm"][at] != "":
-            print(
+            say(
                 f"  {name}: two solutions, yarns of {columns['weft_thickness_mm'][at]:.4g} (weft) and "
                 f"{columns['warp_thickness_mm'][at]:.4g} mm (warp), taken, "
                 f"or {columns['other_weft_thickness_mm'][at]:.4g} and {columns['other_warp_thickness_mm'][at]:.4g} mm; "
@@ -268,7 +329,7 @@ def _print_notes(table) -> None:
             )
         for quantity, measured, model in table.comparisons[at]:
             difference = 100 * (model - measured) / measured
-            print(f"  {name}: {quantity} measured {measured:.4g}, model {model:.4g} ({difference:+.2f} %)")
+            say(f"  {name}: {quantity} measured {measured:.4g}, model {model:.4g} ({difference:+.2f} %)")
 
 
 def _validate(settings) -> int:
@@ -287,43 +348,91 @@ def _validate(settings) -> int:
         spreads += spread_out(measured, spread)
         notes += doubts(measured, table)
         worst += [100 * abs(model / value - 1) for row in table.comparisons for _, value, model in row]
-    if not settings.quiet:
-        if comparisons:
-            _print_table([("row", "quantity", "measured", "model", "difference %"), *comparisons])
-            print(f"{len(worst)} comparisons, the largest difference {max(worst):.2f} %")
-        else:
-            print("no row measures more than what identifies it: nothing to compare with the model")
-        print()
-        if spreads:
-            _print_table([("row", "identified", "weft", "warp"), *spreads])
-        else:
-            print("no row gives a standard deviation (columns *_std): none to propagate")
-        for note in notes:
-            print(f"note: {note}")
+    if comparisons:
+        _print_table([("row", "quantity", "measured", "model", "difference %"), *comparisons])
+        say(f"{len(worst)} comparisons, the largest difference {max(worst):.2f} %")
+    else:
+        say("no row measures more than what identifies it: nothing to compare with the model")
+    say()
+    if spreads:
+        _print_table([("row", "identified", "weft", "warp"), *spreads])
+    else:
+        say("no row gives a standard deviation (columns *_std): none to propagate")
+    for note in notes:
+        say(f"note: {note}")
     _raise(errors)
     return 0
 
 
+def _each_row(settings, work: Callable[[str], None]) -> int:
+    """Do ``work`` for every row asked for, whatever becomes of the others; the worst exit status."""
+    if settings.all == bool(settings.rows):
+        settings.usage_error("give the names of rows or --all" + ", not both" * bool(settings.rows))
+    names, errors = list(dict.fromkeys(settings.rows)), []
+    if settings.all:
+        solved, errors = _tables(settings)
+        names = [name for measured, _ in solved.values() for name in measured.names]
+    elif len(names) == 1:
+        work(names[0])
+        return 0
+    wrong: dict[str, int] = {}
+    for name in names:
+        if not settings.quiet:
+            complain(f"{name}:")
+        try:
+            work(name)
+        except BrokenPipeError:
+            raise
+        except Exception as error:
+            wrong[name], sentence = _told(error)
+            complain(sentence if name in sentence else f"{name}: {sentence}")
+    for error in errors:
+        complain(str(error))
+    if not settings.quiet:
+        done, failed = len(names) - len(wrong), f"; not: {', '.join(wrong)}" if wrong else ""
+        tables = f"; {len(errors)} tables have errors" if errors else ""
+        say(f"{len(names)} rows: {done} done{failed}{tables}")
+    return max([0, *wrong.values(), *(error.exit_status for error in errors)])
+
+
+def _row(settings, name: str):
+    """The table of one row; what is wrong with other tables is told once."""
+    from .pipeline import find_row
+
+    row, others = find_row(settings.families, name)
+    told = vars(settings).setdefault("told", set())
+    for error in map(str, others):
+        if not settings.quiet and error not in told:
+            complain(f"note, in a table this row is not of: {error}")
+            told.add(error)
+    return row
+
+
+def _mesh_options(settings) -> dict[str, float]:
+    """What the command line says of the mesh, as keywords of :func:`fabric_cad.mesh_options`."""
+    asked = {name: getattr(settings, name, None) for name, *_ in _MESH}
+    return {name: value for name, value in asked.items() if value is not None}
+
+
 def _cell(settings) -> int:
-    from .pipeline import Stages, find_row, make_cell
+    return _each_row(settings, lambda name: _make_cell(settings, name))
+
+
+def _make_cell(settings, name: str) -> None:
+    from .pipeline import Stages, make_cell
     from .report import summary
 
-    row, others = find_row(settings.families, settings.row)
-    if not settings.quiet:
-        for error in others:
-            print(f"note, in a table this row is not of: {error}", file=sys.stderr)
-    mesh = {name: getattr(settings, name) for name, *_ in _MESH if getattr(settings, name) is not None}
-    report = make_cell(row, settings.out, mesh, settings.deck, Stages(_Progress(settings.quiet)))
-    if not settings.quiet:
-        print(summary(report))
-        folder = Path(settings.out) / settings.row
-        for name in (
-            *(f"{settings.row}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")),
-            "solved.csv",
-            "report.json",
-        ):
-            print(f"  {folder / name}")
-    return 0
+    row = _row(settings, name)
+    stages = Stages(_Progress(settings.quiet))
+    report = make_cell(row, settings.out, _mesh_options(settings), settings.deck, stages)
+    if settings.quiet:
+        return
+    say(summary(report))
+    folder = Path(settings.out) / name
+    kinds = ("step", "msh", "inp", "vtu", "png")
+    for file in (*(f"{name}.{kind}" for kind in kinds), "solved.csv", "report.json"):
+        say(f"  {folder / file}")
+    sys.stdout.flush()
 
 
 def _positive(kind: type):
@@ -342,57 +451,54 @@ def _positive(kind: type):
 def _tension(settings) -> int:
     from .simulation.run import make_tension
 
-    return _simulate(settings, "tension", make_tension)
+    return _each_row(settings, lambda name: _simulate(settings, name, "tension", make_tension))
 
 
 def _shear(settings) -> int:
     from .simulation.run import make_shear
 
-    return _simulate(settings, "shear", make_shear)
+    return _each_row(settings, lambda name: _simulate(settings, name, "shear", make_shear))
 
 
-def _simulate(settings, kind: str, make) -> int:
-    """Run a case, or write its deck alone."""
+def _simulate(settings, name: str, kind: str, make) -> None:
+    """Run a case of one row, or write its deck alone."""
     from .cores import cores
-    from .pipeline import Stages, find_row
+    from .pipeline import Stages
     from .simulation.job import Solver
     from .simulation.report import summary
     from .simulation.run import write_case
     from .simulation.solver import find_solver
 
-    row, others = find_row(settings.families, settings.row)
-    if not settings.quiet:
-        for error in others:
-            print(f"note, in a table this row is not of: {error}", file=sys.stderr)
+    row = _row(settings, name)
     progress = _Progress(settings.quiet)
-    mesh = {name: getattr(settings, name) for name, *_ in _MESH if getattr(settings, name) is not None}
-    options = {"mesh": mesh, "stages": Stages(progress)}
+    options = {"mesh": _mesh_options(settings), "stages": Stages(progress)}
     if settings.deck:
         for deck in write_case(kind, row, settings.families, settings.out, settings.deck, **options):
             if not settings.quiet:
-                print(f"  {deck}")
-        return 0
+                say(f"  {deck}")
+        return
     solver = Solver(find_solver(settings.ccx), settings.threads or cores(), settings.time_limit, progress.solver)
     report = make(row, settings.families, settings.out, solver, **options)
     if not settings.quiet:
-        print(summary(report))
+        say(summary(report))
         for file in report["files"]:
-            print(f"  {Path(settings.out) / settings.row / file}")
-    return 0
+            say(f"  {Path(settings.out) / name / file}")
+        sys.stdout.flush()
 
 
 def _show(settings) -> int:
-    mesh_file = Path(settings.out) / settings.row / f"{settings.row}.msh"
+    return _each_row(settings, lambda name: _show_row(settings, name))
+
+
+def _show_row(settings, name: str) -> None:
+    mesh_file = Path(settings.out) / name / f"{name}.msh"
     if not mesh_file.exists():
-        for name, *_ in _MESH:
-            setattr(settings, name, None)
         settings.deck = "calculix"
-        _cell(settings)
+        _make_cell(settings, name)
     from .meshing.mesher import read_mesh
     from .views import show_cell
 
-    show_cell(read_mesh(mesh_file), settings.row)
-    return 0
+    show_cell(read_mesh(mesh_file), name)
 
 
 def _study(settings) -> int:
@@ -406,13 +512,13 @@ def _study(settings) -> int:
         progress.end()
     if not settings.quiet:
         units = counts.done + counts.refused + counts.failed
-        print(
+        say(
             f"{study.name}: {units} units: {counts.done} done, {counts.refused} refused, {counts.failed} failed"
             + (f"; {counts.before} of them needed no run" if counts.before else "")
         )
         for name in ("table.parquet", "table.csv", "sensitivity.csv", "sensitivity.png"):
             if (counts.folder / name).exists():
-                print(f"  {counts.folder / name}")
+                say(f"  {counts.folder / name}")
     return 0
 
 
@@ -428,13 +534,11 @@ class _Units:
         self.told = progress.seconds
         left = f"{_clock(progress.left)} left" if progress.rate else "starting"
         text = f"  {progress.finished} of {progress.units} units, {progress.rate:.2f}/s, {left}"
-        print(
-            f"\r\033[K{text}" if self.terminal else text, end="" if self.terminal else "\n", file=sys.stderr, flush=True
-        )
+        complain(f"\r\033[K{text}" if self.terminal else text, end="" if self.terminal else "\n")
 
     def end(self) -> None:
         if self.terminal and not self.quiet:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)
+            complain("\r\033[K", end="")
 
 
 def _clock(seconds: float) -> str:
@@ -452,9 +556,7 @@ def _count(text: str) -> int:
 def _wif(settings) -> int:
     from .wif import wif_row
 
-    row = wif_row(settings.draft, settings.name)
-    if not settings.quiet:
-        print(row, end="")
+    say(wif_row(settings.draft, settings.name), end="")
     return 0
 
 
@@ -476,7 +578,7 @@ def _init(settings) -> int:
                 shutil.copyfile(table, place)
                 message = f"{place}: written"
             if not settings.quiet:
-                print(message)
+                say(message)
     except OSError as error:
         raise OutputError(f"{error.filename or target}: cannot be written: {error.strerror}") from error
     return 0
