@@ -12,6 +12,8 @@ from pathlib import Path
 
 from . import __version__, terminal
 from .errors import FabricCadError, InputError, OutputError, did_you_mean
+from .interrupts import stoppable
+from .staging import commits, staged, standing
 from .terminal import complain, say
 
 _DESCRIPTION = """\
@@ -161,18 +163,19 @@ def _parser() -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; returns its exit status."""
     terminal.prepare()
-    try:
-        status = _run(arguments)
-    except SystemExit as stopped:  # --help, --version and wrong usage
-        if lost := terminal.finish():
-            complain(lost)
-            raise SystemExit(1) from stopped
-        raise
-    except BrokenPipeError:
-        status = 1
-    except BaseException as error:
-        status, sentence = _told(error)
-        complain(sentence)
+    with stoppable(), commits() as done:
+        try:
+            status = _run(arguments)
+        except SystemExit as end:  # --help, --version and wrong usage
+            if lost := terminal.finish():
+                complain(lost)
+                raise SystemExit(1) from end
+            raise
+        except BrokenPipeError:
+            status = 1
+        except BaseException as error:
+            status, sentence = _told(error, done)
+            complain(sentence)
     lost = terminal.finish()
     if lost:
         complain(lost)
@@ -192,16 +195,19 @@ def _run(arguments: list[str] | None) -> int:
     return parsed.run(parsed)
 
 
-def _told(error: BaseException) -> tuple[int, str]:
-    """Exit status and sentence for what went wrong. Raises the error again where it is a fault of the program."""
+def _told(error: BaseException, done: list[Path]) -> tuple[int, str]:
+    """Exit status and sentence for what went wrong; ``done`` are the folders that were put in place before.
+
+    Raises the error again where it is a fault of the program.
+    """
     if isinstance(error, FabricCadError):
         return error.exit_status, str(error)
     if library := _missing_library(error):
         return 1, f"the system lacks the library {library}; the README lists what a bare container lacks"
     if _is_interrupt(error):
-        return 1, "\nstopped; earlier results are as they were"
+        return 1, f"\nstopped; {standing(done)}"
     if isinstance(error, MemoryError):
-        return 1, "out of memory; earlier results are as they were"
+        return 1, f"out of memory; {standing(done)}"
     if isinstance(error, OSError):
         place = f"{error.filename}: " if error.filename else ""
         return 1, f"{place}{error.strerror or error}"
@@ -301,8 +307,6 @@ def _print_table(lines: list[tuple[str, ...]]) -> None:
 
 
 def _solve(settings) -> int:
-    from .staging import staged
-
     solved, errors = _tables(settings)
     target = Path(settings.out) / "families"
     with staged(target) as aside:

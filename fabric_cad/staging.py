@@ -1,53 +1,126 @@
-"""Results are written aside and moved into place only when all of them are there."""
+"""Results are written aside and put in place in one step, when all of them are there.
+
+A reader who opens a row's folder at any moment finds one complete result; so does who looks after a kill.
+"""
 
 from __future__ import annotations
 
 import errno
 import os
 import shutil
-import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from . import folders
 from .errors import FabricCadError, OutputError
 from .interrupts import uninterrupted
+from .working import NEW, OLD, clear_leftovers, working_folder
 
-_LEFTOVER = ".fabric-cad-"
+_commits: list[Path] | None = None
 
 
 @contextmanager
-def staged(target: Path) -> Iterator[Path]:
-    """A folder to write in; on success every file of it moves into ``target``, replacing its like.
+def staged(target: Path, seal: Callable[[Path], None] | None = None, last: str | None = None) -> Iterator[Path]:
+    """A folder to write in, which on success becomes ``target``, with the other files that are there.
 
-    Other files in ``target`` stay. On any error, Ctrl-C included, ``target`` is untouched
-    and the folder is gone. Raises :class:`OutputError` where ``target`` cannot be written.
+    A folder in it replaces its like as a whole. ``seal`` is called with the complete folder, files that stay
+    included, before it is put in place; it may write and remove, but not change files that stay. On any error,
+    Ctrl-C included, ``target`` is untouched and the folder is gone. Another run with the same target is waited for.
+
+    With ``last``, the name of a file, ``target`` stays the folder it is and takes the files one by one, that
+    one at the end: it says that the others are complete (a study's folder, at work in other files meanwhile).
+
+    Raises :class:`OutputError` where ``target`` cannot be written, or is a link: a row's files are not written
+    out of the output folder.
     """
     with _output_errors(target):
-        for folder in (target, *target.parents):
-            if folder.exists() and not folder.is_dir():
-                raise OutputError(f"{folder}: is in the way, it is not a folder")
+        _check(target)
         target.parent.mkdir(parents=True, exist_ok=True)
-        _clear_leftovers(target.parent)
-        aside = Path(tempfile.mkdtemp(prefix=f"{_LEFTOVER}{os.getpid()}-", dir=target.parent))
-    try:
-        with _output_errors(target):
+        clear_leftovers(target.parent)
+        with working_folder(target.parent, target.name) as work:
+            aside = work / NEW
+            aside.mkdir()
             yield aside
-            with uninterrupted():
-                _move(aside, target)
+            _check(target)
+            if last is None:
+                _replace(aside, target, work / OLD, seal)
+            else:
+                _move(aside, target, last)
+
+
+@contextmanager
+def commits() -> Iterator[list[Path]]:
+    """The folders whose results this process has put in place, from here on."""
+    global _commits
+    before, _commits = _commits, []
+    try:
+        yield _commits
     finally:
-        shutil.rmtree(aside, ignore_errors=True)
+        _commits = before
 
 
-def _move(aside: Path, target: Path) -> None:
-    files = sorted(aside.iterdir())
-    for file in files:
-        if (target / file.name).is_dir():
-            raise OutputError(f"{target / file.name}: is in the way, it is a folder")
+def standing(done: list[Path]) -> str:
+    """How the results stand where a run ended early that had put ``done`` in place."""
+    if not done:
+        return "earlier results are as they were"
+    names = ", ".join(str(path) for path in dict.fromkeys(done))
+    return f"the new results in {names} are complete, all others are as they were"
+
+
+def _check(target: Path) -> None:
+    """Raise :class:`OutputError` where something else is at a folder's place."""
+    for folder in (target, *target.parents):
+        if folder.exists() and not folder.is_dir():
+            raise OutputError(f"{folder}: is in the way, it is not a folder")
+    if target.is_symlink():
+        raise OutputError(f"{target}: is in the way, it is a link to {os.readlink(target)}")
+
+
+def _replace(aside: Path, target: Path, spare: Path, seal: Callable[[Path], None] | None) -> None:
+    """Make ``aside`` the new ``target``, with all that is there beside its like."""
+    written = _check_names(aside, target)
+    seen: folders.Seen = {}
+    if target.exists():
+        folders.carry_over(target, aside, seen)
+        shutil.copystat(target, aside)
+    if seal is not None:
+        seal(aside)
+    folders.to_disk(aside, {inode for inode, *_ in seen.values()})
+    with uninterrupted():
+        former = folders.put_in_place(aside, target, spare)
+        if _commits is not None:
+            _commits.append(target)
+        if former is not None:
+            folders.rescue(former, target, seen, written)
+        folders.names_to_disk(target.parent)
+
+
+def _check_names(aside: Path, target: Path) -> set[str]:
+    """Names of what was written. Raises :class:`OutputError` where one is a file here and a folder there."""
+    names = set()
+    for path in aside.iterdir():
+        names.add(path.name)
+        if (target / path.name).is_dir() and not path.is_dir():
+            raise OutputError(f"{target / path.name}: is in the way, it is a folder")
+        if path.is_dir() and (target / path.name).exists() and not (target / path.name).is_dir():
+            raise OutputError(f"{target / path.name}: is in the way, it is not a folder")
+    return names
+
+
+def _move(aside: Path, target: Path, last: str) -> None:
+    """Move files into ``target`` one by one, ``last`` at the end."""
+    names = sorted(_check_names(aside, target), key=lambda name: (name == last, name))
+    folders.to_disk(aside)
     target.mkdir(exist_ok=True)
-    os.chmod(aside, 0o755)
-    for file in files:
-        os.replace(file, target / file.name)
+    with uninterrupted():
+        for name in names:
+            if name == last:
+                folders.names_to_disk(target)
+            os.replace(aside / name, target / name)
+        folders.names_to_disk(target)
+        if _commits is not None:
+            _commits.append(target)
 
 
 @contextmanager
@@ -69,23 +142,3 @@ def _is_full(target: Path, error: Exception) -> bool:
         return True
     existing = next(folder for folder in (target, *target.absolute().parents) if folder.is_dir())
     return shutil.disk_usage(existing).free < 1 << 16
-
-
-def _clear_leftovers(folder: Path) -> None:
-    """Remove what runs that were killed outright have left aside."""
-    for aside in folder.glob(f"{_LEFTOVER}*-*"):
-        owner = aside.name[len(_LEFTOVER) :].split("-")[0]
-        if owner.isdigit() and not _alive(int(owner)):
-            shutil.rmtree(aside, ignore_errors=True)
-
-
-def _alive(process: int) -> bool:
-    if os.name != "posix":
-        return True  # no harmless way to ask
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True

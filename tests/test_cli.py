@@ -240,16 +240,6 @@ def test_a_full_device_is_told_as_such(result, monkeypatch):
             raise error
 
 
-def test_what_killed_runs_left_is_cleared(result):
-    dead = subprocess.Popen([sys.executable, "-c", ""])
-    dead.wait()
-    for process in (dead.pid, os.getpid()):
-        (result.parent / f".fabric-cad-{process}-x").mkdir()
-    with staging.staged(result):
-        pass
-    assert sorted(p.name for p in result.parent.iterdir()) == [f".fabric-cad-{os.getpid()}-x", "row"]
-
-
 @pytest.mark.skipif(os.name != "posix", reason="sends a POSIX signal")
 @pytest.mark.parametrize(
     ("stage", "after"), [("identify", 0.05), ("identify", 0.5), ("identify", 1.0), ("solids", 0.05), ("mesh", 0.05)]

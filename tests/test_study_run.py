@@ -5,6 +5,7 @@ import json
 import os
 import random
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -149,10 +150,20 @@ def test_another_run_of_the_same_study_is_told_so(here, capsys):
         with pytest.raises(OutputError):
             run_study(read_study("study.toml"))
     told = capsys.readouterr().err
-    assert told == (
-        f"build/study: another run of this study is under way (process {os.getpid()}); its table will be here\n"
-    )
+    holder = f"process {os.getpid()} on {socket.gethostname()}"
+    assert told == f"build/study: another run of this study is under way ({holder}); its table will be here\n"
     assert main(["study", "study.toml", "-q"]) == 0
+
+
+@pytest.mark.skipif(os.name != "posix", reason="makes links")
+def test_the_lock_of_a_study_is_taken_nowhere_else(here):
+    Path("build/study").mkdir(parents=True)
+    Path("build/study/.lock").symlink_to(here / "elsewhere")
+    Path("build/linked").symlink_to(here)
+    for folder in ("build/study", "build/linked"):
+        with pytest.raises(OutputError, match="link"), held(Path(folder)):
+            pass
+    assert not Path("elsewhere").exists()
 
 
 def start(*arguments):

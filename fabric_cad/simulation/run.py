@@ -36,7 +36,7 @@ def make_tension(row: Family, families: str | Path, out: str | Path, solver: Sol
     ``families`` is the folder whose ``simulation.toml`` holds, where it has one. ``options``:
     ``mesh``, keywords of :func:`fabric_cad.mesh_options` that win over the settings', and
     ``stages``. Raises :class:`FabricCadError`; where the solver stopped early, what it reached is
-    in ``out/<row name>/tension_incomplete``, and earlier results are as they were.
+    in ``out/<row name>/tension_incomplete`` until a later run finishes, and earlier results are as they were.
     """
     return _make("tension", row, families, out, solver, **options)
 
@@ -72,14 +72,24 @@ def _make(
     stages: Stages | None = None,
 ) -> dict:
     name, settings = row.names[0], read_settings(families, row.names[0])
-    with staged(Path(out) / name) as folder:
+    target, incomplete, finished = Path(out) / name, f"{kind}_{INCOMPLETE}", False
+
+    def seal(folder: Path) -> None:
+        if finished and (folder / incomplete).exists():
+            shutil.rmtree(folder / incomplete)
+
+    with staged(target, seal) as folder:
         report, _ = run_case(kind, row, settings, folder, solver or Solver(), mesh or {}, stages or Stages())
-        if not report["solver"]["finished"]:
-            target = Path(out) / name / f"{kind}_{INCOMPLETE}"
-            with staged(target) as kept:
-                for file in folder.iterdir():
-                    shutil.move(file, kept / file.name)
-            raise SolverError(f"{name}: the solver {report['solver']['reason']}; what it reached is in {target}")
+        finished = report["solver"]["finished"]
+        if not finished:
+            files = list(folder.iterdir())
+            (folder / incomplete).mkdir()
+            for file in files:
+                file.rename(folder / incomplete / file.name)
+
+    if not finished:
+        reason = report["solver"]["reason"]
+        raise SolverError(f"{name}: the solver {reason}; what it reached is in {target / incomplete}")
     return report
 
 
@@ -106,7 +116,7 @@ def run_case(
 
 def _prepared(kind: str, row: Family, settings: Settings, folder: Path, mesh: Mapping, stages: Stages) -> Case:
     """The row's cell, meshed; its own files are dropped."""
-    with tempfile.TemporaryDirectory(prefix="fabric-cad-") as scratch:
+    with tempfile.TemporaryDirectory(prefix="scratch-", dir=folder) as scratch:
         return Case(kind, loaded_cell(row, settings, mesh, Path(scratch), stages), settings, folder, stages)
 
 

@@ -199,7 +199,7 @@ def _write(study: Study, folder: Path, samples: Samples, status, reasons, figure
     if unknown := [name for name in study.figures if name not in figures]:
         raise InputError(Problem(f"{', '.join(unknown)}: no such figure; {folder.name} has {', '.join(figures)}"))
     found = sensitivities(study.design, samples, figures, study.figures)
-    with staged(folder) as aside:
+    with staged(folder, last="table.parquet") as aside:  # its digest says that the others are there
         write_table(columns, aside, digest)
         if found:
             _write_csv(aside / "sensitivity.csv", found)

@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 
-from .. import __version__
+from .. import __version__, locks
 from ..errors import OutputError
 from ..tables import Family
 from .units import Outcome, Work
@@ -68,25 +68,29 @@ def _lines(path: Path) -> Iterator[tuple[str, Outcome]]:
 def held(folder: Path) -> Iterator[None]:
     """Keep other runs out of a study's folder; the system lets go when this process ends, however it does.
 
-    Raises :class:`OutputError` where a run is under way. Without such locks (Windows) two runs
-    only do their units twice.
+    Raises :class:`OutputError` where a run is under way, or the folder or its lock is a link. On a file
+    system without locks two runs only do their units twice.
     """
-    try:
-        import fcntl
-    except ImportError:
-        yield
-        return
     folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / ".lock", "a+", encoding="utf-8") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            lock.seek(0)
+    if folder.is_symlink():
+        raise OutputError(f"{folder}: is in the way, it is a link to {os.readlink(folder)}")
+    try:
+        descriptor = locks.open_lock(folder / ".lock")
+    except OSError as error:
+        raise OutputError(f"{folder / '.lock'}: cannot be opened: {error.strerror}") from error
+    try:
+        if not _taken(descriptor):
             raise OutputError(
-                f"{folder}: another run of this study is under way (process {lock.read().strip() or 'unknown'}); "
-                "its table will be here"
-            ) from error
-        lock.truncate(0)
-        lock.write(str(os.getpid()))
-        lock.flush()
+                f"{folder}: another run of this study is under way ({locks.holder(descriptor)}); its table will be here"
+            )
+        locks.sign(descriptor)
         yield
+    finally:
+        os.close(descriptor)
+
+
+def _taken(descriptor: int) -> bool:
+    try:
+        return locks.take(descriptor)
+    except OSError:  # no locks here
+        return True
