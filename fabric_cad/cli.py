@@ -144,7 +144,11 @@ def _parser() -> argparse.ArgumentParser:
         )
     study = command("study", _study, "run a study of many fabrics into OUT/<study>; the same command again goes on")
     study.add_argument("file", metavar="STUDY.toml", help="base row, factors, design and depth (README, 'Studies')")
-    study.add_argument("--scheduler", metavar="ADDRESS", help="a running Dask cluster, e.g. tcp://host:8786")
+    study.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="a running Dask cluster, e.g. tls://host:8786; whoever controls it can run code as you",
+    )
     study.add_argument("--workers", type=_count, metavar="N", help="processes on this machine (default: one a core)")
     show = command("show", _show, "show a row's cell in a window; makes it first if it is not there")
     rows(show, every=False)

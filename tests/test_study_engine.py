@@ -1,7 +1,13 @@
-"""Work on a real cluster: a worker that dies or hangs costs its own unit, which is tried twice."""
+"""Work in worker processes: one that dies or hangs costs its own unit, and nobody else may reach or outlive them."""
 
-import importlib.util
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 
+import psutil
 import pytest
 import workloads
 
@@ -27,10 +33,79 @@ def test_no_scheduler_is_one_line():
         list(run_tasks([("a", ())], print, scheduler="tcp://127.0.0.1:9"))
 
 
-def test_without_dask_the_command_says_how_to_get_it(monkeypatch):
-    import sys
-
+def test_without_dask_a_study_runs_here_and_a_cluster_says_how_to_get_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
+    ended = list(run_tasks([("a", (-3,))], abs, workers=1))
+    assert ended[-1] == ("a", 3)
     with pytest.raises(FabricCadError, match=r"pip install 'fabric-cad\[study\]'"):
-        list(run_tasks([("a", ())], print))
-    assert importlib.util.find_spec("dask") is not None
+        list(run_tasks([("a", ())], print, scheduler="tcp://127.0.0.1:9"))
+
+
+def processes_of(study):
+    return [study, *study.children(recursive=True)]
+
+
+HOLD = """
+import sys
+import workloads
+from fabric_cad.study.engine import run_tasks
+if __name__ == "__main__":
+    names = [f"unit_{number}" for number in range(2)]
+    list(run_tasks([(name, (sys.argv[1], name)) for name in names], workloads.hold, workers=2))
+"""
+
+
+@pytest.fixture
+def holding(tmp_path):
+    """A study whose two workers are held up in C code, and the process numbers of those."""
+    script = tmp_path / "hold.py"
+    script.write_text(HOLD)
+    places = {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path])}
+    study = subprocess.Popen([sys.executable, script, tmp_path], env=os.environ | places, start_new_session=True)
+    noted = [tmp_path / f"unit_{number}" for number in range(2)]
+    end = time.monotonic() + 60
+    while not all(note.exists() and note.read_text() for note in noted):
+        assert study.poll() is None and time.monotonic() < end
+        time.sleep(0.05)
+    yield study, [int(note.read_text()) for note in noted]
+    for process in processes_of(psutil.Process(study.pid)) if study.poll() is None else []:
+        process.kill()
+    study.wait()
+
+
+def test_nobody_can_connect_to_a_running_study(holding):
+    study, workers = holding
+    running = processes_of(psutil.Process(study.pid))
+    assert set(workers) <= {process.pid for process in running}
+    for process in running:
+        assert process.net_connections(kind="inet") == []
+        assert [socket for socket in process.net_connections(kind="unix") if socket.laddr] == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a worker first leaves its C code")
+def test_a_killed_study_leaves_no_worker_behind(holding):
+    study, workers = holding
+    left = [process for process in processes_of(psutil.Process(study.pid)) if process.pid != study.pid]
+    os.kill(study.pid, signal.SIGKILL)
+    study.wait()
+    _, alive = psutil.wait_procs(left, timeout=10)
+    assert alive == [] and not any(map(psutil.pid_exists, workers))
+
+
+def test_a_cluster_with_tls_takes_those_with_its_certificate_only():
+    import dask
+    from distributed import LocalCluster
+    from distributed.security import Security
+
+    keys = Security.temporary()
+    certificates = {
+        "distributed.comm.tls.ca-file": keys.tls_ca_file,
+        "distributed.comm.tls.client.cert": keys.tls_client_cert,
+        "distributed.comm.tls.client.key": keys.tls_client_key,
+    }
+    with LocalCluster(n_workers=1, host="127.0.0.1", security=keys, dashboard_address=None, processes=False) as cluster:
+        address = cluster.scheduler_address
+        with pytest.raises(InputError, match="no certificates for TLS; Dask's configuration names them"):
+            list(run_tasks([("a", (-3,))], abs, scheduler=address))
+        with dask.config.set(certificates):
+            assert list(run_tasks([("a", (-3,))], abs, scheduler=address))[-1] == ("a", 3)

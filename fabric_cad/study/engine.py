@@ -1,21 +1,37 @@
-"""The door to dask.distributed: tasks to the workers of a cluster, results as they come."""
+"""Tasks to workers, results as they come; the door to dask.distributed.
+
+Workers are processes of this machine (:mod:`fabric_cad.study.processes`, without Dask) or those of a
+Dask cluster that someone else has started.
+"""
 
 from __future__ import annotations
 
-import logging
 import os
-import signal
 import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
-from multiprocessing import resource_tracker
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from contextlib import AbstractContextManager
+from typing import Protocol
 
 from ..cores import cores
 from ..errors import FabricCadError, InputError
+from .processes import LocalWorkers
 
-_MISSING = "a study of cells needs dask.distributed: pip install 'fabric-cad[study]'"
+_MISSING = "a study on a Dask cluster needs dask.distributed: pip install 'fabric-cad[study]'"
 _TICK = 0.5  # s between two looks at the workers
 _GATHER = 60.0  # s within which a finished result must arrive
+
+
+class Workers(AbstractContextManager, Protocol):
+    """Workers, each with a name, of which each takes one task at a time."""
+
+    def free(self) -> Iterable[Hashable]:
+        """Workers that have no task."""
+
+    def start(self, worker: Hashable, work: Callable, arguments: tuple) -> None:
+        """Send a task to a free worker."""
+
+    def ended(self, seconds: float) -> list[tuple[Hashable, object]]:
+        """(worker, result) of tasks that ended, waited for at most so long; errors as results."""
 
 
 def run_tasks(
@@ -32,55 +48,98 @@ def run_tasks(
     time, so that one that dies takes no other task with it, whatever the cluster does about its
     failures. Raises :class:`FabricCadError` where the scheduler cannot be reached or is lost.
     """
-    try:
-        import distributed  # noqa: F401
-    except ImportError as error:
-        raise FabricCadError(_MISSING) from error
-    waiting, again, tries = iter(tasks), [], {}
-    with _client(scheduler, workers) as client:
-        running: dict[str, tuple] = {}  # worker: (future, name, arguments)
+    waiting, again = iter(tasks), []
+    tries: dict[str, int] = {}
+    crew: Workers = LocalWorkers(workers or cores()) if scheduler is None else ClusterWorkers(scheduler)
+
+    with crew:
+        running: dict[Hashable, tuple[str, tuple]] = {}
         more = True
         while True:
-            there = client.nthreads()
-            for worker in there:
-                if worker in running:
-                    continue
+            for worker in crew.free():
                 task = again.pop() if again else next(waiting, None)
                 more = task is not None
                 if not more:
                     break
-                name, arguments = task
+                name, arguments = running[worker] = task
                 tries[name] = tries.get(name, 0) + 1
-                key = f"fabric-cad-{os.urandom(8).hex()}"
-                running[worker] = client.submit(work, *arguments, key=key, pure=False, workers=[worker]), *task
+                crew.start(worker, work, arguments)
+
             if not (running or again or more):
                 return
-            if not _wait([future for future, *_ in running.values()], client):
+
+            ended = crew.ended(_TICK)
+            if not ended:
                 yield None
-            for worker, (future, name, arguments) in list(running.items()):
-                if future.done() or worker not in there:
-                    del running[worker]
-                    result = _result(future)
-                    if isinstance(result, Exception) and tries[name] < 2:
-                        again.append((name, arguments))
-                    else:
-                        yield name, result
+            for worker, result in ended:
+                name, arguments = running.pop(worker)
+                if isinstance(result, Exception) and tries[name] < 2:
+                    again.append((name, arguments))
+                else:
+                    yield name, result
 
 
-def _wait(futures: list, client) -> bool:
-    """Wait for one of the futures, or for a moment. Raises :class:`FabricCadError` where the scheduler is gone."""
-    from distributed import wait
+class ClusterWorkers:
+    """The workers of the Dask cluster at an address, as many as there are at any moment.
 
-    if client.status != "running":
-        raise FabricCadError("the scheduler is lost; the same command goes on once it is back")
-    if not futures:
-        time.sleep(_TICK)
-        return False
-    try:
-        wait(futures, timeout=_TICK, return_when="FIRST_COMPLETED")
-    except TimeoutError:
-        return False
-    return True
+    Who controls the scheduler, or can reach one without TLS, runs code in this process and in the
+    workers: results and tasks are pickles. ``tls://`` addresses take the certificates of Dask's own
+    configuration (``distributed.comm.tls``). Raises :class:`InputError` where no scheduler answers.
+    """
+
+    def __init__(self, scheduler: str) -> None:
+        try:
+            from distributed import Client
+        except ImportError as error:
+            raise FabricCadError(_MISSING) from error
+        try:
+            self.client = Client(scheduler, timeout="5s")
+        except TypeError as error:
+            raise InputError(
+                f"--scheduler {scheduler}: no certificates for TLS; Dask's configuration names them "
+                "(distributed.comm.tls: ca-file, client.cert, client.key)"
+            ) from error
+        except (OSError, ValueError) as error:
+            raise InputError(f"--scheduler {scheduler}: no scheduler answers there") from error
+        self.futures: dict[str, object] = {}
+
+    def __enter__(self) -> ClusterWorkers:
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        self.client.__exit__(*problem)
+
+    def free(self) -> list[str]:
+        """Workers that have no task."""
+        return [worker for worker in self.client.nthreads() if worker not in self.futures]
+
+    def start(self, worker: str, work: Callable, arguments: tuple) -> None:
+        """Send a task to a free worker."""
+        key = f"fabric-cad-{os.urandom(8).hex()}"
+        self.futures[worker] = self.client.submit(work, *arguments, key=key, pure=False, workers=[worker])
+
+    def ended(self, seconds: float) -> list[tuple[str, object]]:
+        """(worker, result) of tasks that ended or whose worker went, waited for at most so long.
+
+        Raises :class:`FabricCadError` where the scheduler is gone.
+        """
+        self._wait(seconds)
+        there = self.client.nthreads()
+        over = [worker for worker, future in self.futures.items() if future.done() or worker not in there]
+        return [(worker, _result(self.futures.pop(worker))) for worker in over]
+
+    def _wait(self, seconds: float) -> None:
+        from distributed import wait
+
+        if self.client.status != "running":
+            raise FabricCadError("the scheduler is lost; the same command goes on once it is back")
+        if not self.futures:
+            time.sleep(seconds)
+            return
+        try:
+            wait(list(self.futures.values()), timeout=seconds, return_when="FIRST_COMPLETED")
+        except TimeoutError:
+            pass
 
 
 def _result(future) -> object:
@@ -97,39 +156,3 @@ def _result(future) -> object:
         pass  # the worker died with the result
     future.cancel()
     return ChildProcessError("its worker died")
-
-
-@contextmanager
-def _client(scheduler: str | None, workers: int | None) -> Iterator:
-    import dask
-    from distributed import Client, LocalCluster
-
-    with ExitStack() as stack:
-        if scheduler is not None:
-            try:
-                client = Client(scheduler, timeout="5s")
-            except (OSError, ValueError) as error:
-                raise InputError(f"--scheduler {scheduler}: no scheduler answers there") from error
-        else:
-            stack.enter_context(
-                dask.config.set({"distributed.scheduler.allowed-failures": 0, "logging.distributed": "critical"})
-            )
-            cluster = LocalCluster(
-                n_workers=0,
-                threads_per_worker=1,
-                host="127.0.0.1",
-                dashboard_address="127.0.0.1:0",  # any port that is free
-                silence_logs=logging.CRITICAL,
-            )
-            stack.enter_context(cluster)
-            cluster.sync(_leave_interrupts_alone)
-            cluster.scale(workers or cores())
-            client = Client(cluster)
-        yield stack.enter_context(client)
-
-
-async def _leave_interrupts_alone() -> None:
-    """Keep Ctrl-C from this thread and all that it starts, the workers: it is the study that stops, and ends them."""
-    if hasattr(signal, "pthread_sigmask"):
-        resource_tracker.ensure_running()  # would lift the mask when it is started with the first worker
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
