@@ -90,3 +90,12 @@ def test_compaction_doubles_the_modulus_at_its_strain(tmp_path):
     crush = np.array([0.15])
     assert 3 * law.hardening * crush**2 == pytest.approx(law.E3_MPa)
     assert read(tmp_path, "").yarn.hardening == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("a = " + 3000 * "[", "nested too deeply"), ("a = " + 5000 * "1", "not TOML that can be read")],
+)
+def test_toml_that_its_reader_chokes_on(tmp_path, text, expected):
+    with pytest.raises(InputError, match=f"simulation.toml: .*{expected}"):
+        read(tmp_path, text)
