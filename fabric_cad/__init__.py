@@ -7,6 +7,8 @@ The consistent model of Hivet and Boisse (Finite Elements in Analysis and Design
     cell.write_step("twill32.step")
     mesh_cell("twill32.step", table["twill32"], MeshOptions(), "twill32.msh")
 
+Without a table: ``measured_fabric("twill", over=3, under=2, weft_density_per_mm=0.35, ...)``.
+
 CadQuery and gmsh are loaded when a cell is first built or meshed, not by importing this package.
 """
 
@@ -19,11 +21,14 @@ __version__ = "0.1.0"
 _FROM = {
     "read_family": "tables",
     "read_families": "tables",
+    "measured_fabric": "by_hand",
+    "Family": "tables",
     "read_wif": "wif",
     "identify": "identification",
     "propagate": "scatter",
     "read_solved": "solved",
     "SolvedFabric": "solved",
+    "SolvedTable": "solved",
     "build_cell": "masters",
     "mesh_cell": "meshing",
     "read_mesh": "meshing",
@@ -38,6 +43,9 @@ _FROM = {
     "run_study": "study",
     "FabricCadError": "errors",
     "InputError": "errors",
+    "ArgumentError": "errors",
+    "UnknownRowError": "errors",
+    "MissingPackageError": "errors",
     "BuildError": "errors",
     "OutputError": "errors",
     "SolverError": "errors",

@@ -13,6 +13,7 @@ from pathlib import Path
 from . import __version__, terminal
 from .errors import FabricCadError, InputError, OutputError, did_you_mean
 from .interrupts import stoppable
+from .numerals import number, whole
 from .staging import commits, staged, standing
 from .terminal import complain, say
 
@@ -27,16 +28,16 @@ puts tables to start from into ./families.
 _EPILOG = "exit status: 0 done, 2 bad input or usage, 1 anything else; of several rows the highest of theirs"
 
 _MESH = (
-    ("size", float, "MM", "target element size in mm; numbers given below win over it"),
-    ("across", int, "N", "elements across a weft, and along a warp's crossings (default 12)"),
-    ("crossing", int, "N", "elements along a weft's crossings, and across a warp (default: as --across)"),
+    ("size", number, "MM", "target element size in mm; numbers given below win over it"),
+    ("across", whole, "N", "elements across a weft, and along a warp's crossings (default 12)"),
+    ("crossing", whole, "N", "elements along a weft's crossings, and across a warp (default: as --across)"),
     (
         "through",
-        int,
+        whole,
         "N",
         "layers through the thickness, even for lenticular sections (default 2), from 4 for round ones (default 4)",
     ),
-    ("gap", int, "N", "elements along the gap between crossings, even (default 4)"),
+    ("gap", whole, "N", "elements along the gap between crossings, even (default 4)"),
 )
 
 
@@ -128,11 +129,11 @@ def _parser() -> argparse.ArgumentParser:
             case.add_argument(f"--{option}", type=kind, metavar=metavar, help=coarser)
         case.add_argument("--ccx", metavar="PATH", help="the CalculiX solver (default: ccx on the PATH)")
         case.add_argument(
-            "--threads", type=_positive(int), metavar="N", help="threads of the solver (default: all cores)"
+            "--threads", type=_positive(whole), metavar="N", help="threads of the solver (default: all cores)"
         )
         case.add_argument(
             "--time-limit",
-            type=_positive(float),
+            type=_positive(number),
             metavar="S",
             default=3600.0,
             help="seconds for a solver job (default 3600)",
@@ -259,20 +260,33 @@ class _Progress:
             complain(f"{start}{text}", end=end)
 
 
-def _tables(settings) -> tuple[dict, list[InputError]]:
-    """Solved tables by family, and the errors of those that have none."""
-    from .identification import identify
+def _tables(settings, partial: bool = False) -> tuple[dict, list[InputError]]:
+    """Measured and solved tables by family, and the errors of those that have none.
+
+    With ``partial`` a table that can be read is there without its wrong rows, whose errors are told.
+    """
+    from .identification import identify, identify_rows
+    from .table_files import stray_tables
     from .tables import read_families
 
     solved, errors = {}, []
-    for family, table in read_families(settings.families).items():
+    for family, table in read_families(settings.families, partial).items():
         if isinstance(table, InputError):
             errors.append(table)
             continue
         try:
+            if partial:
+                found = identify_rows(table)
+                refused = [*table.refused, *found.refused.values()]
+                if refused:
+                    errors.append(InputError(sorted(refused, key=lambda problem: problem.line)))
+                table = table.take(found.rows.tolist())
             solved[family] = table, identify(table)
         except InputError as error:
             errors.append(error)
+    if not settings.quiet:
+        for stray in stray_tables(Path(settings.families)):
+            complain(f"note: {stray}")
     return solved, errors
 
 
@@ -282,7 +296,7 @@ def _raise(errors: list[InputError]) -> None:
 
 
 def _list(settings) -> int:
-    solved, errors = _tables(settings)
+    solved, errors = _tables(settings, partial=True)
     lines = [("row", "weave", "section", "model", "identified by", "thickness mm")]
     for family, (measured, table) in solved.items():
         columns = table.columns
@@ -378,7 +392,7 @@ def _each_row(settings, work: Callable[[str], None]) -> int:
         settings.usage_error("give the names of rows or --all" + ", not both" * bool(settings.rows))
     names, errors = list(dict.fromkeys(settings.rows)), []
     if settings.all:
-        solved, errors = _tables(settings)
+        solved, errors = _tables(settings, partial=True)
         names = [name for measured, _ in solved.values() for name in measured.names]
     elif len(names) == 1:
         work(names[0])
@@ -404,15 +418,17 @@ def _each_row(settings, work: Callable[[str], None]) -> int:
 
 
 def _row(settings, name: str):
-    """The table of one row; what is wrong with other tables is told once."""
+    """The table of one row; what is wrong with other rows and tables is told once."""
     from .pipeline import find_row
 
     row, others = find_row(settings.families, name)
     told = vars(settings).setdefault("told", set())
-    for error in map(str, others):
-        if not settings.quiet and error not in told:
-            complain(f"note, in a table this row is not of: {error}")
-            told.add(error)
+    for error in others:
+        own = error.problems[0].path == row.path
+        place = "another row of its table" if own else "in a table this row is not of"
+        if not (settings.quiet or getattr(settings, "all", False) or str(error) in told):
+            complain(f"note, {place}: {error}")
+            told.add(str(error))
     return row
 
 
@@ -443,8 +459,8 @@ def _make_cell(settings, name: str) -> None:
     sys.stdout.flush()
 
 
-def _positive(kind: type):
-    """An option's reader: a number of a kind, above 0."""
+def _positive(kind):
+    """An option's reader: what ``kind`` reads, above 0."""
 
     def read(text: str):
         value = kind(text)
@@ -556,7 +572,7 @@ def _clock(seconds: float) -> str:
 
 
 def _count(text: str) -> int:
-    if not (text.isdigit() and int(text)):
+    if not (text.isascii() and text.isdigit() and int(text)):
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number above 0")
     return int(text)
 
@@ -574,12 +590,20 @@ def shipped_families() -> Path:
     return inside if inside.is_dir() else Path(__file__).parents[1] / "families"
 
 
+def _other_form(table: Path) -> Path:
+    """The file, or the workbook that holds the same table."""
+    from .table_files import WORKBOOKS
+
+    forms = [table.with_suffix(suffix) for suffix in WORKBOOKS] if table.suffix == ".csv" else []
+    return next((form for form in forms if form.exists()), table)
+
+
 def _init(settings) -> int:
     target = Path("families")
     try:
         target.mkdir(exist_ok=True)
         for table in sorted([*shipped_families().glob("*.csv"), *shipped_families().glob("*.toml")]):
-            place = target / table.name
+            place = _other_form(target / table.name)
             if place.exists():
                 message = f"{place}: kept, it is there already"
             else:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .closing import ALONE, BOUNDED, CLOSING, ROUNDING, RULES, SYMBOLS, Closed
-from .errors import InputError, Problem
+from .errors import InputError, Problem, expect
 from .lengths import excess_length, slope_from_crimp
 from .sections import free_parabola, lateral_arc, round_between, round_free_side
 from .solved import PLATEAUX, SolvedTable, point_columns
@@ -138,9 +138,10 @@ def identify(table: Family) -> SolvedTable:
     Raises :class:`InputError` listing, for every row that is not a fabric, the number that
     makes it so; nothing unconverged is returned.
     """
+    expect(table, Family, "table", " (read_family gives one)")
     found = identify_rows(table)
     if found.refused:
-        raise InputError(sorted(found.refused.values(), key=lambda problem: problem.line))
+        raise InputError(sorted(found.refused.values(), key=lambda problem: problem.line or 0))
     lists = {name: v.tolist() if isinstance(v, np.ndarray) else v for name, v in found.columns.items()}
     return SolvedTable(lists, found.comparisons())
 

@@ -10,14 +10,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .errors import InputError, did_you_mean
+from .errors import InputError, Problem, did_you_mean
 from .identification import identify
 from .interrupts import uninterrupted
 from .scatter import propagate
 from .solved import SolvedFabric, SolvedTable, read_solved
 from .staging import staged
 from .sweeps import contact_patches
-from .tables import Family, read_families
+from .table_files import stray_tables
+from .tables import Family, expect_row, read_families
 
 if TYPE_CHECKING:
     import numpy as np
@@ -43,22 +44,28 @@ class Stages:
 
 
 def find_row(folder: str | Path, name: str) -> tuple[Family, tuple[InputError, ...]]:
-    """The table of one row, from the family tables of a folder, and the errors of other tables.
+    """The table of one row, from the family tables of a folder, and the errors of other rows and tables.
 
-    Raises :class:`InputError` where no sound table has the row, or its own table has
-    anything wrong.
+    Raises :class:`InputError` with the problems of the row where it has any, and with those that
+    may be its own (of tables that cannot be read, rows without a proper name, files that are nearly
+    called as tables are) where no row is called so.
     """
-    tables = read_families(folder)
-    errors = {family: table for family, table in tables.items() if isinstance(table, InputError)}
-    for family, table in tables.items():
-        if family not in errors and name in table.names:
-            return table[name], tuple(errors.values())
-    if errors:
-        problems = [problem for error in errors.values() for problem in error.problems]
+    read = read_families(folder, partial=True).values()
+    tables = [table for table in read if isinstance(table, Family)]
+    unread = [table for table in read if isinstance(table, InputError)]
+    if problems := [problem for table in tables for problem in table.problems_of(name)]:
         raise InputError(problems)
-    names = [each for table in tables.values() for each in table.names]
-    hint = did_you_mean(name, names)
-    raise InputError(f"{folder}: no row is called {name!r}{hint} ('fabric-cad list' shows them all)")
+
+    for table in tables:
+        if name in table:
+            others = [InputError(other.refused) for other in tables if other.refused]
+            return table[name], (*unread, *others)
+
+    names = [*(row for table in tables for row in table.names), *(p.row for t in tables for p in t.refused if p.row)]
+    message = f"no row is called {name!r}{did_you_mean(name, names)} ('fabric-cad list' shows them all)"
+    unnamed = [problem for table in tables for problem in table.refused if not problem.row]
+    perhaps = [*(problem for error in unread for problem in error.problems), *unnamed, *stray_tables(Path(folder))]
+    raise InputError([Problem(message, str(folder)), *perhaps])
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,6 +166,7 @@ def make_cell(
     """
     from .meshing.options import mesh_options
 
+    expect_row(row)
     stages = stages or Stages()
     (name,) = row.names
     options = mesh_options(identify(row)[name], **(mesh or {}))

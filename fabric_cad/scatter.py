@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .errors import InputError, Problem
+from .errors import InputError, Problem, expect
 from .identification import identify
 from .solved import SolvedTable
 from .tables import Family
@@ -53,6 +53,7 @@ def propagate(table: Family, solved: SolvedTable | None = None) -> Spread:
     one-sided difference is taken, good to about 1e-5. Raises :class:`InputError` where the
     table does, and naming the row and column where a fabric is left on either side.
     """
+    expect(table, Family, "table", " (read_family gives one)")
     solved = identify(table) if solved is None else solved
     columns = _number_columns(solved)
     mean = _numbers(solved, columns)
@@ -66,7 +67,7 @@ def propagate(table: Family, solved: SolvedTable | None = None) -> Spread:
             variance[:, rows] += (slopes * std[rows]) ** 2
             problems += wrong
     if problems:
-        raise InputError(sorted(problems, key=lambda problem: problem.line))
+        raise InputError(sorted(problems, key=lambda problem: problem.line or 0))
     return Spread(dict(zip(columns, mean)), dict(zip(columns, np.sqrt(variance))))
 
 
@@ -105,7 +106,7 @@ def doubts(table: Family, solved: SolvedTable) -> list[Problem]:
             for at in np.flatnonzero(turned).tolist()
             if "fabric_thickness_mm" not in solved.columns["identified_by"][rows[at]]
         ]
-    return sorted(found, key=lambda problem: problem.line)
+    return sorted(found, key=lambda problem: problem.line or 0)
 
 
 def _number_columns(solved: SolvedTable) -> list[str]:

@@ -17,11 +17,11 @@ Columns, for weft and warp alike (``weft_...``, ``warp_...``), mm and 1/mm:
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from .errors import InputError, Problem
+from .errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
 from .sections import KINDS, ContactSide, Frame, FreeSide
 from .weaves import Weave
 
@@ -161,30 +161,47 @@ class SolvedTable:
     """A whole solved table, column by column; every column is a list of one value a row.
 
     ``comparisons[row]`` lists (quantity, measured, model) of what a row measured beyond what
-    identified it.
+    identified it. ``table[name]`` is one row as :class:`SolvedFabric`, ``name in table`` whether
+    there is one; iterating gives one after the other.
     """
 
     columns: Mapping[str, Sequence]
     comparisons: tuple[tuple[tuple[str, float, float], ...], ...]
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the rows."""
+        return tuple(self.columns["name"])
+
     def __len__(self) -> int:
         return len(self.columns["name"])
 
+    def __iter__(self) -> Iterator[SolvedFabric]:
+        return (self[name] for name in self.names)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
+    def _number(self, name: str) -> int:
+        """The number of a row. Raises :class:`UnknownRowError`, a KeyError."""
+        if not isinstance(name, str):
+            raise ArgumentError(f"a row of a table is named by a text, not {type(name).__name__} {name!r:.60}")
+        if name not in self.names:
+            raise UnknownRowError(f"no row is called {name!r}{did_you_mean(name, self.names)}")
+        return self.names.index(name)
+
     def row(self, name: str) -> dict[str, object]:
-        """One row as a mapping of column to value. Raises KeyError."""
-        try:
-            at = self.columns["name"].index(name)
-        except ValueError:
-            raise KeyError(name) from None
-        return {column: values[at] for column, values in self.columns.items()}
+        """One row as a mapping of column to value. Raises :class:`UnknownRowError`, a KeyError."""
+        number = self._number(name)
+        return {column: values[number] for column, values in self.columns.items()}
 
     def __getitem__(self, name: str) -> SolvedFabric:
-        """One row as the value that drives a master. Raises KeyError."""
+        """One row as the value that drives a master. Raises :class:`UnknownRowError`, a KeyError."""
         return SolvedFabric.from_row(self.row(name))
 
     def only(self, name: str) -> SolvedTable:
-        """The table of one row. Raises KeyError."""
-        at = self.columns["name"].index(name)
+        """The table of one row. Raises :class:`UnknownRowError`, a KeyError."""
+        at = self._number(name)
         return SolvedTable({c: [v[at]] for c, v in self.columns.items()}, self.comparisons[at : at + 1])
 
     def write(self, path: str | Path) -> None:

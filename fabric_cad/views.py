@@ -102,6 +102,25 @@ def _described(mesh: Mesh):
     return grid
 
 
+def pyvista_grid(mesh: Mesh):
+    """The hexahedra as :meth:`fabric_cad.meshing.Mesh.to_pyvista` describes them."""
+    grid = _described(mesh)
+    grid.cell_data["fibre_axis"] = mesh.fibre_axes()
+    grid.field_data["yarn_names"] = list(mesh.yarns)
+    return grid
+
+
+def pyvista_blocks(mesh: Mesh):
+    """The hexahedra as ``yarns`` and every surface under its name, in one MultiBlock."""
+    pyvista = _pyvista()
+    blocks = pyvista.MultiBlock({"yarns": pyvista_grid(mesh)})
+    for name, quads in mesh.surfaces.items():
+        nodes, corners = np.unique(quads, return_inverse=True)
+        blocks[name] = pyvista.PolyData.from_regular_faces(mesh.points[nodes], corners.reshape(-1, 4))
+        blocks[name].point_data["node"] = nodes
+    return blocks
+
+
 def _write(grid, path: str | Path) -> None:
     with uninterrupted():
         from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
+from ..errors import expect
 from ..solved import SolvedFabric
 
 
@@ -12,4 +13,5 @@ def build_cell(fabric: SolvedFabric):
 
     Raises :class:`~fabric_cad.errors.BuildError` where OCCT makes no valid solid of a yarn.
     """
+    expect(fabric, SolvedFabric, "fabric", " (identify(table)['name'] gives one)")
     return import_module(f"{__name__}.{fabric.family}").cell(fabric)

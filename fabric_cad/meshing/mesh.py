@@ -41,6 +41,28 @@ class Mesh:
             along += p[self.hexahedra[:, corner + 4]] - p[self.hexahedra[:, corner]]
         return along / np.linalg.norm(along, axis=1)[:, None]
 
+    def to_pyvista(self, surfaces: bool = False):
+        """The mesh for PyVista: an UnstructuredGrid of the hexahedra.
+
+        Cell data ``yarn`` (from 1, in the order of the field data ``yarn_names``), ``direction`` (0 weft,
+        1 warp) and ``fibre_axis``. With ``surfaces`` a MultiBlock: the grid as ``yarns``, then every
+        surface as PolyData under its name, with its node numbers from 0 as point data ``node``.
+        """
+        from ..views import pyvista_blocks, pyvista_grid
+
+        return pyvista_blocks(self) if surfaces else pyvista_grid(self)
+
+    def to_meshio(self):
+        """The mesh for meshio: one block of hexahedra, one of the quadrilaterals of all surfaces.
+
+        ``cell_sets`` hold every yarn's hexahedra and every surface's quadrilaterals under their names; cell
+        data ``yarn`` (from 1) and ``fibre_axis`` (0, 0, 0 on quadrilaterals). Raises
+        :class:`~fabric_cad.errors.MissingPackageError` where meshio is not installed.
+        """
+        from .exchange import meshio_mesh
+
+        return meshio_mesh(self)
+
     def across_axes(self) -> np.ndarray:
         """Unit vectors (elements, 3) across the yarn, in the fabric's plane and normal to the fibre."""
         fibre = self.fibre_axes()

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import BuildError
+from ..errors import BuildError, expect
 from ..interrupts import uninterrupted
 from ..solved import SolvedFabric
 from ..weaves import yarns_of
@@ -55,6 +55,8 @@ def mesh_cell(step: str | Path, fabric: SolvedFabric, options: MeshOptions, msh:
     Raises :class:`InputError` where the options do not fit the section, :class:`BuildError`
     where gmsh or the STEP does not give what the fabric asks for.
     """
+    expect(fabric, SolvedFabric, "fabric", " (identify(table)['name'] gives one)")
+    expect(options, MeshOptions, "options")
     options.check(fabric)
     with _session() as gmsh:
         try:

@@ -243,8 +243,11 @@ class _File:
 
 
 def _row_names(families: Path) -> list[str]:
-    """Names of all rows of a folder of family tables, none where it has no sound one."""
+    """Names of all rows of a folder of family tables, unfinished ones too, as far as it can be read."""
     try:
-        return [name for table in read_families(families).values() if isinstance(table, Family) for name in table.names]
+        read = read_families(families, partial=True).values()
     except InputError:
         return []
+    tables = [table for table in read if isinstance(table, Family)]
+    refused = [problem.row for table in tables for problem in table.refused if problem.row]
+    return [*(name for table in tables for name in table.names), *refused]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..bounds import out_of_bounds
 from ..errors import Problem
-from ..patterns import read_pattern, written
+from ..patterns import read_pattern, size_fault, written
 from ..tables import MEASURED, MOST_YARNS, OTHER_UNITS, WEAVE_COLUMNS, Family
 from ..weaves import Weave, pattern_faults, weave_of
 from .design import Samples
@@ -105,8 +105,8 @@ def weave_fault(family: str, cells: Mapping[str, object]) -> tuple[str, str] | N
             pattern = read_pattern(str(cells["pattern"]))
         except ValueError as error:
             return "pattern", str(error)
-        if len(pattern) < 2 or max(len(pattern), *map(len, pattern)) > MOST_YARNS:
-            return "pattern", f"{len(pattern)} wefts are not between 2 and {MOST_YARNS}"
+        if fault := size_fault(str(cells["pattern"]), pattern, MOST_YARNS):
+            return "pattern", fault
         return next((("pattern", fault) for fault in pattern_faults(pattern)), None)
     for column, value in cells.items():
         if not 1 <= value <= MOST_YARNS:
