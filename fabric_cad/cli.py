@@ -7,7 +7,7 @@ import os
 import re
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from . import __version__, terminal
@@ -200,7 +200,7 @@ def _run(arguments: list[str] | None) -> int:
     return parsed.run(parsed)
 
 
-def _told(error: BaseException, done: list[Path]) -> tuple[int, str]:
+def _told(error: BaseException, done: Sequence[Path] = ()) -> tuple[int, str]:
     """Exit status and sentence for what went wrong; ``done`` are the folders that were put in place before.
 
     Raises the error again where it is a fault of the program.
