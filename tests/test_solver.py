@@ -16,8 +16,10 @@ import pytest
 from jobs import BLOCK, endless, needs_ccx, pulled, pushed, step
 
 from fabric_cad.errors import FabricCadError, InputError, SolverError
+from fabric_cad.simulation import solver as solver_module
 from fabric_cad.simulation.results import read_dat, read_frd
 from fabric_cad.simulation.solver import find_solver, run_solver, step_periods
+from fabric_cad.staging import staged
 
 ROOT = Path(__file__).parents[1]
 
@@ -116,21 +118,85 @@ def test_a_stopped_solver_leaves_no_child(tmp_path, how):
     assert (tmp_path / "job.log").read_text() == "started\n"
 
 
-def test_an_interrupt_leaves_no_child(tmp_path):
-    solver = script(tmp_path / "solver", "sleep 60 & echo $! > started\nmv started child\nwait")
-    deck = job(tmp_path, BLOCK)
-    code = (
-        "from pathlib import Path; from fabric_cad.simulation.solver import run_solver; "
-        f"run_solver(Path({str(deck)!r}), Path({str(solver)!r}))"
-    )
+WAITS = "echo $$ > started\nmv started child\nexec sleep 60"
+
+
+def solving(tmp_path, body, prefix=""):
+    """A process that runs a solver of this body in a staged folder, and the solver's number once it is there."""
+    solver = script(tmp_path / "solver", body)
+    code = f"""
+import os, sys; from pathlib import Path
+from fabric_cad.simulation.solver import run_solver
+from fabric_cad.staging import staged
+with staged(Path({str(tmp_path / "build" / "row")!r})) as folder:
+    (folder / "job.inp").write_text("*STEP")
+    {prefix}run_solver(folder / "job.inp", Path({str(solver)!r}))
+"""
     python = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stderr=subprocess.PIPE, text=True)
     until = time.monotonic() + 20
-    while not (tmp_path / "child").exists() and time.monotonic() < until:
+    while not (there := list(tmp_path.glob("build/.fabric-cad-*/new/child"))) and time.monotonic() < until:
         time.sleep(0.02)
+    return python, int(there[0].read_text())
+
+
+def test_an_interrupt_leaves_no_child(tmp_path):
+    python, child = solving(tmp_path, "sleep 60 & echo $! > started\nmv started child\nwait")
     python.send_signal(signal.SIGINT)
     _, errors = python.communicate(timeout=10)
     assert "KeyboardInterrupt" in errors
-    assert gone(int((tmp_path / "child").read_text()))
+    assert gone(child) and list((tmp_path / "build").iterdir()) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_polite_end_of_the_command_leaves_no_child_and_no_folder(tmp_path, number):
+    """The command turns these signals into exceptions."""
+    stoppable = "import fabric_cad.interrupts as i; s = i.stoppable(); s.__enter__(); "
+    python, child = solving(tmp_path, "sleep 60 & echo $! > started\nmv started child\nwait", stoppable)
+    python.send_signal(number)
+    _, errors = python.communicate(timeout=10)
+    assert "Stopped" in errors
+    assert gone(child) and list((tmp_path / "build").iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the system ends no children with their parents")
+def test_a_killed_command_leaves_no_child(tmp_path):
+    python, child = solving(tmp_path, WAITS)
+    python.kill()
+    python.communicate()
+    assert gone(child)
+    with staged(tmp_path / "build" / "other"):
+        pass
+    assert [path.name for path in (tmp_path / "build").iterdir()] == ["other"]
+
+
+def test_a_solver_that_outlives_its_command_keeps_its_folder(tmp_path):
+    """As where the system ends no children with their parents: the child holds the lock along."""
+    survive = "sys.platform = 'other'; "
+    python, child = solving(tmp_path, WAITS, survive)
+    try:
+        python.kill()
+        python.communicate()
+        with staged(tmp_path / "build" / "other"):
+            pass
+        assert alive(child) and list((tmp_path / "build").glob(".fabric-cad-row/new/child"))
+    finally:
+        os.kill(child, signal.SIGKILL)
+    assert gone(child)
+    with staged(tmp_path / "build" / "other"):
+        pass
+    assert [path.name for path in (tmp_path / "build").iterdir()] == ["other"]
+
+
+@pytest.mark.parametrize("how", ["ends", "is stopped"])
+def test_no_call_is_needed_that_windows_lacks(tmp_path, monkeypatch, how):
+    for name in ("wait4", "killpg", "WNOHANG"):
+        monkeypatch.delattr(os, name)
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    monkeypatch.setattr(solver_module, "_ties", lambda folder: {})
+    body = "exec sleep 60" if how == "is stopped" else "exit 3"
+    reason = "stopped at the time limit of 0.3 s" if how == "is stopped" else "ccx ended with status 3"
+    run = run_solver(job(tmp_path, BLOCK), script(tmp_path / "solver", body), time_limit=0.3)
+    assert run.reason.startswith(reason)
 
 
 def test_a_solver_that_dies_is_told_from_one_that_finishes(tmp_path):

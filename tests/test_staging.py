@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+import types
 from pathlib import Path
 
 import pytest
@@ -237,6 +238,27 @@ def test_a_working_folder_that_cannot_be_judged_stays(row, monkeypatch):
     monkeypatch.setattr(locks, "take", no_locks)
     write_result(row, "second")  # and one's own work goes on
     assert is_complete(row) and (left / "half.txt").exists()
+
+
+def test_locks_of_windows(row, monkeypatch):
+    """By its module's calls, since there is no Windows here: one holder at a time, others are told from no locks."""
+    held = []
+
+    def locking(descriptor, mode, count):
+        place = os.fstat(descriptor).st_ino, os.lseek(descriptor, 0, os.SEEK_CUR)
+        if place in held:
+            raise PermissionError(13, "Permission denied")
+        held.append(place)
+
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    monkeypatch.setitem(sys.modules, "msvcrt", types.SimpleNamespace(locking=locking, LK_NBLCK=2))
+    with working.working_folder(row.parent, "row") as folder:
+        other = locks.open_lock(folder / "lock")
+        assert held and not locks.take(other) and locks.holder(other).startswith(f"process {os.getpid()} on ")
+        os.close(other)
+    held.clear()
+    write_result(row, "second")
+    assert is_complete(row) and names(row.parent) == ["row"]
 
 
 def test_a_second_run_of_a_row_waits_and_says_so(row):

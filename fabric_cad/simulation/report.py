@@ -109,7 +109,7 @@ def summary(report: Mapping) -> str:
     lines = [
         f"{report['row']}: {report['case']}, {mesh['hexahedra']} hexahedra, {solver['states']} states in "
         f"{solver['jobs']} job{'s' * (solver['jobs'] != 1)} of CalculiX {solver['version']}, "
-        f"{solver['seconds']:.1f} s, {solver['peak_memory_MB']:.0f} MB"
+        f"{solver['seconds']:.1f} s" + f", {solver['peak_memory_MB']:.0f} MB" * (solver["peak_memory_MB"] > 0)
     ]
     lines += _tension(report["largest"]) if report["case"] == "tension" else _shear(report)
     if contact["max_contact_penetration_mm"] is not None:

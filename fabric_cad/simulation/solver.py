@@ -2,12 +2,14 @@
 
 Its exit status alone says little: 0 also where the deck could not be opened or held no step, 201 for an
 error in the deck as for a job that did not converge. The verdict here comes from the status, the log and
-the increments in the ``.sta`` file together. POSIX only (process groups).
+the increments in the ``.sta`` file together. Where the system has no process groups (Windows), the process alone
+is stopped, and its memory is not known.
 """
 
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import os
 import re
 import shutil
@@ -21,10 +23,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import InputError, Problem, SolverError
+from ..working import lock_of
 from .results import Increment, read_sta
 
 _OUTPUTS = (".log", ".sta", ".cvg", ".dat", ".frd", ".12d")
 _THREADS = ("OMP_NUM_THREADS", "CCX_NPROC_STIFFNESS", "CCX_NPROC_RESULTS", "CCX_NPROC_EQUATION_SOLVER")
+_KILLED = -signal.SIGKILL if hasattr(signal, "SIGKILL") else 1  # the status of what was killed
+_DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
 _POLL = 0.1  # s between two looks at the .sta file
 _HINT = (
     "install it (Debian, Ubuntu: apt-get install calculix-ccx; elsewhere conda-forge's calculix or a build "
@@ -56,7 +61,7 @@ class Run:
     ``increments`` the converged ones, which stay readable in ``.frd`` and ``.dat`` when the job failed
     (killed, it may lack the last); ``cutbacks`` the attempts that failed; ``warnings`` ccx's own, one of
     each kind; ``seconds`` of wall clock;
-    ``peak_memory`` in bytes; ``version`` ccx's, e.g. "2.20", "" if it did not say.
+    ``peak_memory`` in bytes, 0 where the system does not say; ``version`` ccx's, e.g. "2.20", "" if it did not say.
     """
 
     finished: bool
@@ -109,7 +114,9 @@ def run_solver(
     the limit, when ``stop`` is set (the way to end runs in threads of a pool, which Ctrl-C does not
     reach), or on any exception (Ctrl-C, one raised by ``listen``), the process and its children are
     killed; an exception goes on to the caller. SIGTERM ends Python without one, unless the caller makes
-    it one. The steps are looked for in the deck itself, not in files it includes.
+    it one (:func:`fabric_cad.interrupts.stoppable`). On Linux ccx ends also where Python is killed outright,
+    or the thread ends that called this; elsewhere it then runs on, and holds the lock of the working folder
+    its deck is in. The steps are looked for in the deck itself, not in files it includes.
     Raises InputError for a deck that is not there or not an .inp, SolverError where ccx cannot be started.
     """
     deck = Path(deck).resolve()
@@ -154,7 +161,7 @@ class _Child:
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,
-                    start_new_session=True,
+                    **_ties(deck.parent),
                 )
         except OSError as error:
             _refuse(solver, error.strerror or str(error))
@@ -169,26 +176,56 @@ class _Child:
                 pass
 
     def kill(self, why: str) -> None:
-        """End the whole process group at once."""
+        """End the whole process group at once, or the process where there are no groups."""
         self.killed = self.killed or why
         with contextlib.suppress(ProcessLookupError):
-            os.killpg(self.process.pid, signal.SIGKILL)
+            if hasattr(os, "killpg"):
+                os.killpg(self.process.pid, signal.SIGKILL)
+            else:
+                self.process.kill()
 
     def ended(self, wait: float) -> bool:
         """Whether it is over, waited for at most ``wait`` seconds; reads its peak memory meanwhile."""
         until, pause = time.monotonic() + wait, 0.002
         while True:
             self.peak = max(self.peak, _high_water(self.process.pid))
-            pid, status, usage = os.wait4(self.process.pid, os.WNOHANG)
-            if pid:
-                self.status = self.process.returncode = os.waitstatus_to_exitcode(status)
-                # what wait4 says counts the parent's memory at the fork: only where there is nothing better
-                self.peak = self.peak or usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+            if self.reaped():
                 return True
             if time.monotonic() >= until:
                 return False
             time.sleep(pause)
             pause = min(2 * pause, wait)
+
+    def reaped(self) -> bool:
+        """Whether it has ended; its status is kept."""
+        if not hasattr(os, "wait4"):
+            self.status = self.process.poll()
+            return self.status is not None
+        pid, status, usage = os.wait4(self.process.pid, os.WNOHANG)
+        if pid:
+            self.status = self.process.returncode = os.waitstatus_to_exitcode(status)
+            # what wait4 says counts the parent's memory at the fork: only where there is nothing better
+            self.peak = self.peak or usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+        return bool(pid)
+
+
+def _ties(folder: Path) -> dict:
+    """How a child is tied to this process, as options of Popen: a group of its own, our lock, our end."""
+    if os.name != "posix":
+        return {}
+    lock = lock_of(folder)
+    ties: dict = {"start_new_session": True, "pass_fds": () if lock is None else (lock,)}
+    if sys.platform == "linux":
+        parent, prctl = os.getpid(), getattr(ctypes.CDLL(None), "prctl", None)
+
+        def end_with_parent() -> None:
+            prctl(_DIE_WITH_PARENT, signal.SIGKILL, 0, 0, 0)
+            if os.getppid() != parent:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+        if prctl is not None:
+            ties["preexec_fn"] = end_with_parent
+    return ties
 
 
 def _refuse(solver: Path, why: str) -> None:
@@ -267,7 +304,7 @@ def _verdict(deck: Path, child: _Child, periods: tuple[float, ...], seconds: flo
 
 def _failure(child: _Child, log: str, place: str, reached: bool) -> str:
     """Why the job is not finished, "" if it is; ``reached`` whether any increment was tried."""
-    if child.killed and child.status == -signal.SIGKILL:
+    if child.killed and child.status == _KILLED:
         return f"{child.killed} {place}"
     if re.search("best solution and residuals", log):
         return f"did not converge {place}"
