@@ -505,7 +505,7 @@ def _simulate(settings, name: str, kind: str, make) -> None:
     report = make(row, settings.families, settings.out, solver, **options)
     if not settings.quiet:
         say(summary(report))
-        for file in report["files"]:
+        for file in sorted([*report["files"], f"{kind}.json"]):
             say(f"  {Path(settings.out) / name / file}")
         sys.stdout.flush()
 

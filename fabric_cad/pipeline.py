@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -147,8 +147,10 @@ def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> dict:
 
 
 def write_report(report: dict, folder: Path) -> None:
-    """Write ``report.json``."""
-    (folder / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    """Write ``report.json``, which takes the digests of all that is beside it."""
+    from .traces import REPORT, write_traced
+
+    write_traced(report, folder / REPORT)
 
 
 def make_cell(
@@ -165,12 +167,14 @@ def make_cell(
     is as it was.
     """
     from .meshing.options import mesh_options
+    from .traces import trace
 
     expect_row(row)
     stages = stages or Stages()
     (name,) = row.names
     options = mesh_options(identify(row)[name], **(mesh or {}))
-    with staged(Path(out) / name) as folder:
+    report: dict = {}
+    with staged(Path(out) / name, partial(write_report, report)) as folder:
         made = make_step(row, folder, stages)
         meshed = make_mesh(made, options, stages)
         with stages("write deck"):
@@ -183,6 +187,5 @@ def make_cell(
             write_vtu(meshed.mesh, meshed.quality, folder / f"{name}.vtu")
         with stages("picture"):
             draw_cell(meshed.mesh, folder / f"{name}.png")
-        report = checked_report(made, meshed, stages)
-        write_report(report, folder)
+        report |= checked_report(made, meshed, stages) | trace(row, options)
     return report

@@ -34,7 +34,7 @@ def staged(target: Path, seal: Callable[[Path], None] | None = None, last: str |
     Raises :class:`OutputError` where ``target`` cannot be written, or is a link: a row's files are not written
     out of the output folder.
     """
-    with _output_errors(target):
+    with output_errors(target):
         _check(target)
         target.parent.mkdir(parents=True, exist_ok=True)
         clear_leftovers(target.parent)
@@ -124,8 +124,8 @@ def _move(aside: Path, target: Path, last: str) -> None:
 
 
 @contextmanager
-def _output_errors(target: Path) -> Iterator[None]:
-    """Turn what the operating system refuses into a message about the output folder."""
+def output_errors(target: Path) -> Iterator[None]:
+    """Turn what the operating system refuses into a message about a folder that is written to."""
     try:
         yield
     except (FabricCadError, OSError) as error:

@@ -1,8 +1,11 @@
 """Every row shipped, from its table to its files, each file opened again by something else."""
 
+import hashlib
 import json
 import shutil
 import subprocess
+from dataclasses import asdict
+from datetime import datetime
 
 import meshio
 import numpy as np
@@ -10,12 +13,16 @@ import pytest
 from fabrics import section_area
 from PIL import Image
 
+import fabric_cad
+from fabric_cad import mesh_options
 from fabric_cad.cli import shipped_families
 from fabric_cad.edges import allowed_scaled_jacobian
 from fabric_cad.pipeline import find_row, make_cell
 from fabric_cad.solved import read_solved
+from fabric_cad.staging import staged
 from fabric_cad.sweeps import contact_patches, control_planes, control_sections, skin, trajectory
 from fabric_cad.tables import read_families
+from fabric_cad.traces import renew_digests
 from fabric_cad.weaves import yarns_of
 
 ROWS = [name for table in read_families(shipped_families()).values() for name in table.names]
@@ -52,6 +59,30 @@ def test_every_file_is_there(made):
     }
     assert json.loads((made.folder / "report.json").read_text()) == made.report
     assert [file.name for file in made.folder.parent.iterdir()] == [made.name]
+
+
+def test_the_report_says_where_it_comes_from(made):
+    """Version, date with its zone, the options used, the row as read, and a digest of every file beside it."""
+    report = made.report
+    assert report["version"] == fabric_cad.__version__
+    assert datetime.fromisoformat(report["date"]).tzinfo is not None
+    assert report["options"] == asdict(mesh_options(made.fabric))
+    row, _ = find_row(shipped_families(), made.name)
+    given = {name: values[0] for name, values in row.measured.items() if not np.isnan(values[0])}
+    assert report["measured"].items() >= (given | {"name": made.name, "source": row.sources[0]}).items()
+    files = {path.name: path for path in made.folder.iterdir() if path.name != "report.json"}
+    assert report["files"] == {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files.items()}
+
+
+def test_digests_follow_what_comes_to_the_folder_later(twill32):
+    before = json.loads((twill32.folder / "report.json").read_text())
+    with staged(twill32.folder, renew_digests) as folder:
+        (folder / "tension.csv").write_text("k")
+    after = json.loads((twill32.folder / "report.json").read_text())
+    assert after["files"] == before["files"] | {"tension.csv": hashlib.sha256(b"k").hexdigest()}
+    assert before | {"files": 0} == after | {"files": 0}
+    (twill32.folder / "tension.csv").unlink()
+    (twill32.folder / "report.json").write_text(json.dumps(before))
 
 
 def test_yarns_touch_and_do_not_penetrate(made):

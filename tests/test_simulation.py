@@ -2,6 +2,7 @@
 
 import csv
 import json
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -285,7 +286,10 @@ def test_the_commands_leave_their_files(tmp_path, capsys):
         ("shear", ("_curve", "_normal", "_strain", "_pressure")),
     ):
         report = json.loads((folder / f"{case}.json").read_text())
-        assert set(report["files"]) == {file.name for file in folder.glob(f"{case}*")}
+        assert set(report["files"]) | {f"{case}.json"} == {file.name for file in folder.glob(f"{case}*")}
+        assert all(sha256((folder / name).read_bytes()).hexdigest() == file for name, file in report["files"].items())
+        assert report["options"]["across"] == (6 if case == "tension" else 4)
+        assert report["version"] and report["date"] and report["measured"]["name"] == "plain_flat"
         assert {f"{case}{name}.png" for name in pictures} | {f"{case}.vtu", f"{case}.csv"} <= set(report["files"])
         assert report["solver"]["finished"] and not report["solver"]["warnings"]
         assert 0 < report["contact"]["max_contact_penetration_mm"] < 0.002

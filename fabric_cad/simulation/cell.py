@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from ..meshing.mesh import Mesh
+from ..meshing.options import MeshOptions, mesh_options
 from ..pipeline import Stages, checked_report, make_mesh, make_step
 from ..solved import SolvedFabric
 from ..tables import Family
@@ -15,10 +16,11 @@ from .settings import Settings
 
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """The cell that is loaded: its fabric, its mesh, and the report of what was measured on its files."""
+    """The cell that is loaded: its fabric, its mesh and how fine it is, and what was measured on its files."""
 
     fabric: SolvedFabric
     mesh: Mesh
+    options: MeshOptions
     report: dict
 
 
@@ -28,9 +30,8 @@ def loaded_cell(row: Family, settings: Settings, options: Mapping, folder: Path,
     ``options``, keywords of :func:`fabric_cad.mesh_options`, win over the settings' mesh. Raises
     :class:`InputError` where they do not fit, :class:`BuildError` where the cell is not consistent.
     """
-    from ..meshing.options import mesh_options
-
     asked = options if "size" in options else {k: v for k, v in asdict(settings.mesh).items() if v} | dict(options)
     made = make_step(row, folder, stages)
-    meshed = make_mesh(made, mesh_options(made.fabric, **asked), stages)
-    return Cell(made.fabric, meshed.mesh, checked_report(made, meshed, stages))
+    used = mesh_options(made.fabric, **asked)
+    meshed = make_mesh(made, used, stages)
+    return Cell(made.fabric, meshed.mesh, used, checked_report(made, meshed, stages))

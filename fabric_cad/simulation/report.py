@@ -39,7 +39,7 @@ class Case:
 
 
 def case_report(case: Case, name: str, jobs: list[Job], rows: list[dict], found: dict) -> dict:
-    """The content of ``tension.json`` or ``shear.json``."""
+    """The content of ``tension.json`` or ``shear.json``, but for where it comes from (:mod:`fabric_cad.traces`)."""
     reached = [each for job in jobs for each in job.reached]
     settings = asdict(case.settings)
     settings["yarn"]["compaction_strain"] = _finite(settings["yarn"]["compaction_strain"])
@@ -70,7 +70,6 @@ def case_report(case: Case, name: str, jobs: list[Job], rows: list[dict], found:
             "least_volume_ratio": _extreme(min, [row["least_volume_ratio"] for row in rows]),
         },
         **found,
-        "files": sorted([*(file.name for file in case.folder.iterdir()), f"{case.kind}.csv", f"{case.kind}.json"]),
         "seconds": {key: round(value, 4) for key, value in case.stages.seconds.items()},
     }
 

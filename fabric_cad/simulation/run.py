@@ -5,7 +5,6 @@ row -> solved fabric -> STEP -> coarse hexahedra -> deck -> ccx -> table, pictur
 
 from __future__ import annotations
 
-import json
 import math
 import shutil
 import tempfile
@@ -19,6 +18,7 @@ from ..meshing.mesh import Mesh
 from ..pipeline import Stages
 from ..staging import staged
 from ..tables import Family
+from ..traces import renew_digests, trace, write_traced
 from .cell import loaded_cell
 from .job import Job, Reached, Solver, at_rest, condition, run_job, transverse_strains, write_model
 from .penetration import valid_until
@@ -57,7 +57,7 @@ def write_case(
 ) -> list[Path]:
     """Write the decks of a case and run nothing; their places in ``out/<row name>``. Options as above."""
     name, settings = row.names[0], read_settings(families, row.names[0])
-    with staged(Path(out) / name) as folder:
+    with staged(Path(out) / name, renew_digests) as folder:
         case = _prepared(kind, row, settings, folder, mesh or {}, stages or Stages())
         return [Path(out) / name / deck.name for deck in _decks(case, dialect)]
 
@@ -77,6 +77,7 @@ def _make(
     def seal(folder: Path) -> None:
         if finished and (folder / incomplete).exists():
             shutil.rmtree(folder / incomplete)
+        renew_digests(folder)
 
     with staged(target, seal) as folder:
         report, _ = run_case(kind, row, settings, folder, solver or Solver(), mesh or {}, stages or Stages())
@@ -108,9 +109,9 @@ def run_case(
         if not jobs[-1].run.finished:
             break
     rows, found = _WORK[kind](case, jobs)
-    report = case_report(case, row.names[0], jobs, rows, found)
+    report = case_report(case, row.names[0], jobs, rows, found) | trace(row, case.cell.options)
     write_rows(case.path(".csv"), rows)
-    case.path(".json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    write_traced(report, case.path(".json"))
     return report, case.cell.report
 
 

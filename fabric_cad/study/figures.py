@@ -35,7 +35,7 @@ def flat(report: Mapping) -> dict[str, object]:
     """A report as one row: ``volumes.yarn_mm3``, ``identified.weft.control_points.M11_x_mm`` ..., without its times."""
     row: dict[str, object] = {}
     for key, value in report.items():
-        if key in ("row", "family", "seconds"):
+        if key in ("row", "family", "seconds", "options"):
             continue
         if key == "measured_vs_model":
             for each in value:

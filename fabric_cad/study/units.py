@@ -10,14 +10,17 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from functools import partial
 from pathlib import Path
 
 from ..errors import FabricCadError, InputError, SolverError
 from ..pipeline import Stages, checked_report, make_mesh, make_step, write_report
 from ..simulation.settings import Settings
-from ..staging import staged
+from ..staging import output_errors, staged
 from ..tables import Family
+from ..traces import trace
+from ..working import scratch_folder
 from .figures import flat
 
 
@@ -53,7 +56,8 @@ def _mesh(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
     from ..meshing.options import mesh_options
 
     made = make_step(row, folder, stages)
-    return checked_report(made, make_mesh(made, mesh_options(made.fabric, **work.mesh), stages), stages)
+    options = mesh_options(made.fabric, **work.mesh)
+    return checked_report(made, make_mesh(made, options, stages), stages) | {"options": asdict(options)}
 
 
 def _tension(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
@@ -68,7 +72,7 @@ def _tension(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
     if not case["solver"]["finished"]:
         raise SolverError(f"the solver {case['solver']['reason']}")
     found = {f"k={float(at['k']):g}.{name}": at[name] for at in case["largest"] for name in at if name != "k"}
-    return report | {"tension": found | case["contact"]}
+    return report | {"tension": found | case["contact"], "options": case["options"]}
 
 
 DEPTHS: dict[str, Callable[[Family, Work, Path, Stages], dict] | None] = {
@@ -103,11 +107,14 @@ def run_unit(row: Family, work: Work, keep: str | None) -> Outcome:
 
 def _kept(row: Family, work: Work, keep: str | None, stages: Stages) -> dict:
     if keep is None:
-        with tempfile.TemporaryDirectory(prefix="fabric-cad-") as folder:
-            return DEPTHS[work.depth](row, work, Path(folder), stages)
-    with staged(Path(keep) / row.names[0]) as folder:
+        place = Path(tempfile.gettempdir())
+        with output_errors(place), scratch_folder(place) as folder:
+            return DEPTHS[work.depth](row, work, folder, stages)
+
+    traced: dict = {}
+    with staged(Path(keep) / row.names[0], partial(write_report, traced)) as folder:
         report = DEPTHS[work.depth](row, work, folder, stages)
-        write_report(report, folder)
+        traced |= trace(row, None) | report
         return report
 
 
