@@ -4,6 +4,7 @@ import hashlib
 import json
 import shutil
 import subprocess
+import sys
 from dataclasses import asdict
 from datetime import datetime
 
@@ -280,3 +281,19 @@ def test_known_data_give_areal_density_and_fibre_fractions(tmp_path):
     fibre = volumes["areal_density_g_m2"] / density / 1000 * (5 / 0.35) ** 2  # mm of solid fibre x mm2 of cell
     assert volumes["weft_fibre_fraction"] == pytest.approx(fibre / volumes["yarn_mm3"])
     assert volumes["warp_fibre_fraction"] == pytest.approx(volumes["weft_fibre_fraction"])
+
+
+def test_step_is_the_same_to_the_byte_and_says_what_made_it(twill32, tmp_path):
+    """Another process writes the same file, under any name; so does this one, once more."""
+    fabric_cad.build_cell(twill32.fabric).write_step(tmp_path / "again.step")
+    assert (tmp_path / "again.step").read_bytes() == twill32.file("step").read_bytes()
+    code = f"""
+from fabric_cad import build_cell, read_solved
+build_cell(read_solved({str(twill32.folder / "solved.csv")!r})).write_step({str(tmp_path / "other.step")!r})
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)
+    written = (tmp_path / "other.step").read_bytes()
+    assert written == twill32.file("step").read_bytes()
+    header = written.decode().split("ENDSEC;")[0]
+    assert "FILE_DESCRIPTION(('Elementary cell of the fabric twill32')" in header
+    assert "FILE_NAME('twill32'," in header and f"'fabric_cad {fabric_cad.__version__}'" in header

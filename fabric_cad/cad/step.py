@@ -7,25 +7,40 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import cadquery as cq
+from cadquery.occ_impl.assembly import toCAF
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
-from OCP.STEPCAFControl import STEPCAFControl_Reader
-from OCP.TCollection import TCollection_ExtendedString
+from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
+from OCP.STEPConstruct import STEPConstruct, STEPConstruct_Styles
+from OCP.STEPControl import STEPControl_AsIs
+from OCP.StepRepr import StepRepr_HArray1OfRepresentationItem, StepRepr_NextAssemblyUsageOccurrence
+from OCP.StepVisual import StepVisual_MechanicalDesignGeometricPresentationRepresentation
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
+from OCP.XSControl import XSControl_WorkSession
 
+from .. import __version__
 from ..colours import COLOURS
 from ..errors import BuildError
 from ..weaves import direction_of
 
+_NO_TIME = "1970-01-01T00:00:00"
+"""The header's time: none, for the same cell makes the same file. ``report.json`` has the date."""
+
 
 @dataclass(frozen=True)
 class Cell:
-    """The elementary cell as CAD: an assembly ``cell`` with one named, coloured solid a yarn."""
+    """The elementary cell as CAD: an assembly ``cell`` with one named, coloured solid a yarn.
+
+    ``name`` is that of the fabric's row, "" where it is not known.
+    """
 
     assembly: cq.Assembly
+    name: str = ""
 
     @property
     def solids(self) -> dict[str, cq.Solid]:
@@ -33,18 +48,75 @@ class Cell:
         return {child.name: child.obj for child in self.assembly.children}
 
     def write_step(self, path: str | Path) -> None:
-        """Write the cell as STEP AP214, mm. Raises :class:`BuildError` where OCCT cannot."""
-        self.assembly.export(str(path), exportType="STEP", write_pcurves=False)
-        if not Path(path).exists():
+        """Write the cell as STEP AP214, mm: the same bytes for the same cell and version of this program and OCCT.
+
+        The header names the row and the version; its time is a fixed one. Raises :class:`BuildError` where OCCT
+        cannot.
+        """
+        session = XSControl_WorkSession()
+        writer = STEPCAFControl_Writer(session, False)
+        writer.SetNameMode(True)
+        writer.SetColorMode(False)  # OCCT's own order of colours changes from run to run
+        Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)
+        Interface_Static.SetIVal_s("write.precision.mode", 0)
+        Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
+        Interface_Static.SetCVal_s("write.step.unit", "MM")
+        _, document = toCAF(self.assembly, True)
+        writer.Transfer(document, STEPControl_AsIs)
+        _number(session)
+        _colour(session, self.assembly)
+        _write_header(session, self.name or Path(path).stem)
+        if writer.Write(str(path)) != IFSelect_RetDone or not Path(path).exists():
             raise BuildError(f"{path}: OCCT wrote no STEP file")
 
 
-def assemble(yarns: dict[str, cq.Solid]) -> Cell:
-    """The cell of named yarns (``weft_1``, ..., ``warp_1``, ...)."""
+def _number(session: XSControl_WorkSession) -> None:
+    """Number the yarns' places in the assembly from 1; OCCT counts on from file to file of a process."""
+    model, count = session.Model(), 0
+    for index in range(1, model.NbEntities() + 1):
+        entity = model.Value(index)
+        if isinstance(entity, StepRepr_NextAssemblyUsageOccurrence):
+            count += 1
+            entity.SetId(_text(str(count)))
+
+
+def _colour(session: XSControl_WorkSession, assembly: cq.Assembly) -> None:
+    """Add a style for every solid, in the order of the yarns."""
+    model, finder = session.Model(), session.TransferWriter().FinderProcess()
+    for part in assembly.children:
+        styles = STEPConstruct_Styles(session)
+        item = STEPConstruct.FindEntity_s(finder, part.obj.wrapped)
+        colour = STEPConstruct_Styles.EncodeColor_s(part.color.wrapped.GetRGB())
+        if item is None:
+            raise BuildError(f"{part.name}: OCCT has not written it")
+        styled = StepRepr_HArray1OfRepresentationItem(1, 1)
+        styled.SetValue(1, styles.AddStyle(item, styles.MakeColorPSA(item, colour, None, None, 0.0), None))
+        presentation = StepVisual_MechanicalDesignGeometricPresentationRepresentation()
+        presentation.Init(_text(""), styled, styles.FindContext(part.obj.wrapped))
+        model.AddWithRefs(presentation)
+
+
+def _write_header(session: XSControl_WorkSession, name: str) -> None:
+    header = APIHeaderSection_MakeHeader(session.Model())
+    header.SetName(_text(name))
+    header.SetTimeStamp(_text(_NO_TIME))
+    header.SetDescriptionValue(1, _text(f"Elementary cell of the fabric {name}"))
+    header.SetOriginatingSystem(_text(f"fabric_cad {__version__}"))
+    header.SetAuthorValue(1, _text(""))
+    header.SetOrganizationValue(1, _text(""))
+    header.SetAuthorisation(_text(""))
+
+
+def _text(text: str) -> TCollection_HAsciiString:
+    return TCollection_HAsciiString(text)
+
+
+def assemble(yarns: dict[str, cq.Solid], name: str = "") -> Cell:
+    """The cell of named yarns (``weft_1``, ..., ``warp_1``, ...) of the fabric ``name``."""
     assembly = cq.Assembly(name="cell")
-    for name, solid in yarns.items():
-        assembly.add(solid, name=name, color=cq.Color(*COLOURS[direction_of(name)]))
-    return Cell(assembly)
+    for yarn, solid in yarns.items():
+        assembly.add(solid, name=yarn, color=cq.Color(*COLOURS[direction_of(yarn)]))
+    return Cell(assembly, name)
 
 
 def read_step(path: str | Path) -> dict[str, cq.Solid]:

@@ -24,7 +24,7 @@ def woven(fabric: SolvedFabric, weft_over_warp: np.ndarray) -> Cell:
         path = trajectory(fabric, yarn, planes)  # M11 ... M16 or M21 ... M26, over the whole cell
         sections = control_sections(fabric, yarn, planes)  # one in each of them
         yarns[yarn.name] = sweep(path, sections)
-    return assemble(yarns)
+    return assemble(yarns, fabric.name)
 
 
 def show(cell: Cell, show_object) -> None:
