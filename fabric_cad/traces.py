@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from . import __version__
+from .columns import WEAVE_COLUMNS
 from .meshing.options import MeshOptions
-from .tables import WEAVE_COLUMNS, Family
+from .tables import Family
 
 REPORT = "report.json"
 
@@ -46,7 +47,7 @@ def measured_cells(row: Family) -> dict[str, object]:
     texts = {"section": row.sections[0], "thicker": row.thicker[0], "source": row.sources[0], "notes": row.notes[0]}
     return {
         "name": row.names[0],
-        "table": f"{row.path}:{row.lines[0]}",
+        **({} if row.lines[0] is None else {"table": f"{row.place.path}:{row.lines[0]}"}),
         **{column: interlacement[column] for column in WEAVE_COLUMNS[row.family]},
         **{column: value for column, value in numbers.items() if not np.isnan(value)},
         **{column: text for column, text in texts.items() if text or column == "source"},
