@@ -44,8 +44,11 @@ OTHER_UNITS |= {f"{written}_std": (f"{kept}_std", factor) for written, (kept, fa
 STD_WRITTEN = {*STD, *(written for written in OTHER_UNITS if written.endswith("_std"))}
 MAY_BE_ZERO = {name for name in MEASURED if "_offset_" in name} | STD_WRITTEN
 
-TEXTS = ("name", "section", "thicker", "source", "notes")
+TEXTS = ("name", "section", "float_gap", "thicker", "source", "notes")
 SECTIONS = ("lenticular", "flat", "round")
+
+FLOAT_GAPS = ("symmetric", "flat")
+"""Sections between two crossings of one float: symmetric (Fig. 13b) or that of a flat contact (Fig. 13a)."""
 
 MOST_YARNS = 100
 """Largest float or harness a table may ask for, and most wefts or warps of a pattern."""

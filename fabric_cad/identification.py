@@ -382,6 +382,7 @@ def _solved(table, measured, transitions, floats, used, closed, other, two) -> d
         "pattern": [" ".join(weave.pattern) for weave in table.weaves],
         "section": list(table.sections),
         "lateral_height_mm": measured.lateral,
+        "float_gap": list(table.float_gaps),
         "parameters": _parameters(table, measured),
         "identified_by": _texts([" ".join(CLOSING[k] for k in held) for held in _SETS], used.number),
         "fabric_thickness_mm": closed.fabric,

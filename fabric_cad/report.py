@@ -92,6 +92,7 @@ def cell_report(
         "family": fabric.family,
         "weave": _weave(fabric.weave),
         "section": fabric.section,
+        "float_gap": fabric.float_gap,
         "parameters": int(row["parameters"]),
         "identified": identified,
         "measured_vs_model": [
@@ -222,7 +223,9 @@ def summary(report: dict) -> str:
         )
     lines = [
         f"{report['row']}: {kind} {weave['wefts']} wefts x {weave['warps']} warps, "
-        f"{report['section']} sections, {report['parameters']} parameters",
+        f"{report['section']} sections, "
+        + ("flat float gaps, " if report["float_gap"] == "flat" else "")
+        + f"{report['parameters']} parameters",
         f"  {'':22}{'weft':>12}{'warp':>12}",
     ]
     for label, key, form in (

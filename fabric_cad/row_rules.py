@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 
 from .columns import (
+    FLOAT_GAPS,
     MAY_BE_ZERO,
     MEASURED,
     MOST_YARNS,
@@ -203,7 +204,7 @@ class RowReader:
         return pattern
 
     def check_choices(self, row: dict) -> None:
-        for column, choices in (("section", SECTIONS), ("thicker", DIRECTIONS)):
+        for column, choices in (("section", SECTIONS), ("float_gap", FLOAT_GAPS), ("thicker", DIRECTIONS)):
             if row[column] not in ("", *choices):
                 self.wrong(f"{quoted(row[column])} is none of {', '.join(choices)}", column)
 

@@ -12,6 +12,9 @@ Columns, for weft and warp alike (``weft_...``, ``warp_...``), mm and 1/mm:
 ``<plateau>_<kind>_q``, ``_v0_mm``, ``_left_mm``, ``_right_mm``  free side of the contact section at
                             that plateau, kind ``float``, ``edge`` (turn on the right), ``turn``
 ``between_q``, ``between_end_mm``   both sides of the section between crossings
+
+and for both directions ``float_gap``: between two crossings of one float the section is the ``symmetric``
+one of the line above, or that of a ``flat`` contact, which is the crossings' own of the kind ``float``.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from .columns import FLOAT_GAPS
 from .errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
 from .sections import KINDS, ContactSide, Frame, FreeSide
 from .weaves import Weave
@@ -70,13 +74,17 @@ class Direction:
 
 @dataclass(frozen=True)
 class SolvedFabric:
-    """One row of a solved table."""
+    """One row of a solved table.
+
+    ``float_gap`` is one of :data:`~fabric_cad.columns.FLOAT_GAPS`.
+    """
 
     name: str
     family: str
     weave: Weave
     section: str
     lateral_height: float
+    float_gap: str
     fabric_thickness: float
     weft: Direction
     warp: Direction
@@ -140,12 +148,16 @@ class SolvedFabric:
                 between=FreeSide(number(f"{name}_between_q"), 0.0, -end, end),
             )
 
+        float_gap = str(row.get("float_gap") or FLOAT_GAPS[0])  # tables written before it have no such column
+        if float_gap not in FLOAT_GAPS:
+            raise ValueError(f"float_gap: {float_gap!r} is none of {', '.join(FLOAT_GAPS)}")
         return cls(
             name=str(row["name"]),
             family=str(row["family"]),
             weave=Weave(int(row["over"]), int(row["under"]), int(row["step"]), tuple(str(row["pattern"]).split())),
             section=str(row["section"]),
             lateral_height=float(row["lateral_height_mm"]),
+            float_gap=float_gap,
             fabric_thickness=float(row["fabric_thickness_mm"]),
             weft=direction("weft", "warp"),
             warp=direction("warp", "weft"),

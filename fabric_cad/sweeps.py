@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .sections import Section, contact_section, free_section
+from .sections import KINDS, Section, contact_section, free_section
 from .solved import SolvedFabric
 from .splines import Quadratic, Spline, as_cubic, line, quadratic_spline
 from .weaves import Yarn
@@ -145,18 +145,29 @@ def trajectory(fabric: SolvedFabric, yarn: Yarn, planes: Sequence[ControlPlane])
 
 
 def control_sections(fabric: SolvedFabric, yarn: Yarn, planes: Sequence[ControlPlane]) -> tuple[Section, ...]:
-    """The section in every control plane of one yarn (Fig. 9, 13, 17)."""
-    solved = fabric.directions[yarn.direction]
-    frame = fabric.frame(yarn.direction)
-    between = free_section(frame, solved.between)
-    in_crossings = []
-    for high, left, right in zip(yarn.high, yarn.turns_left, yarn.turns_right):
+    """The section in every control plane of one yarn (Fig. 9, 13, 17).
+
+    In the middle of a gap it is the symmetric one (Fig. 13b); with ``float_gap`` flat, between two
+    crossings of one float, that of a flat contact on the float's side (Fig. 13a).
+    """
+    solved, frame = fabric.directions[yarn.direction], fabric.frame(yarn.direction)
+
+    def touching(high: bool, left: bool, right: bool) -> Section:
         plateau = "high" if high else "low"
-        free = solved.free_sides[plateau, {0: "float", 1: "edge", 2: "turn"}[left + right]]
+        free = solved.free_sides[plateau, KINDS[left + right]]
         if left and not right:
             free = free.mirrored
-        in_crossings.append(contact_section(frame, solved.contact[plateau], (left, right), free, below=high))
-    return tuple(between if plane.crossing is None else in_crossings[plane.crossing] for plane in planes)
+        return contact_section(frame, solved.contact[plateau], (left, right), free, below=high)
+
+    in_crossings = [touching(*crossing) for crossing in zip(yarn.high, yarn.turns_left, yarn.turns_right)]
+
+    symmetric, flat = free_section(frame, solved.between), fabric.float_gap == "flat"
+    in_gaps = [
+        touching(high, False, False) if flat and same else symmetric for high, same in zip(yarn.high, yarn.floats_on)
+    ]
+    gaps = iter([*in_gaps, in_gaps[0]])  # the cell is cut in a gap, which stands at either end
+
+    return tuple(next(gaps) if plane.crossing is None else in_crossings[plane.crossing] for plane in planes)
 
 
 def skin(path: Trajectory, sections: Sequence[Section]) -> Skin:

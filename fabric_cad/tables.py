@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from .columns import (
+    FLOAT_GAPS,
     MEASURED,
     MOST_YARNS,
     OTHER_UNITS,
@@ -31,6 +32,7 @@ from .table_files import NO_TABLE, WORKBOOKS, family_of, stray_tables, table_fil
 from .weaves import Weave, weave_of
 
 __all__ = [
+    "FLOAT_GAPS",
     "MEASURED",
     "MOST_YARNS",
     "OTHER_UNITS",
@@ -66,6 +68,7 @@ class Family:
     measured: Mapping[str, np.ndarray]
     scatter: Mapping[str, np.ndarray]
     sections: tuple[str, ...]
+    float_gaps: tuple[str, ...]
     thicker: tuple[str, ...]
     sources: tuple[str, ...]
     notes: tuple[str, ...]
@@ -200,6 +203,7 @@ def family_table(
         measured={column: np.array([row[column] for row in rows], dtype=float) for column in MEASURED},
         scatter={column: np.array([row[std] for row in rows], dtype=float) for column, std in zip(MEASURED, STD)},
         sections=tuple(row["section"] or "lenticular" for row in rows),
+        float_gaps=tuple(row["float_gap"] or FLOAT_GAPS[0] for row in rows),
         thicker=tuple(row["thicker"] for row in rows),
         sources=tuple(row["source"] for row in rows),
         notes=tuple(row["notes"] for row in rows),

@@ -4,6 +4,9 @@ The skin of :mod:`~fabric_cad.sweeps` moves a section along the yarn in vertical
 two sections strip by strip. The strips of pointed and flat sections end at the same places in every
 section of a yarn, so that an area blends as the heights do, and the cubic smoothstep has the mean
 1/2: between two control planes the volume is their distance times the mean of both areas, exactly.
+
+``float_gap`` changes no volume of such sections: the symmetric section (two parabolas, each (b - h)/2 deep)
+and that of a flat contact (one parabola, b - h deep) both have the area c b - c (b - h)/3.
 """
 
 from __future__ import annotations

@@ -160,6 +160,14 @@ class Yarn:
     turns_left: tuple[bool, ...]
     turns_right: tuple[bool, ...]
 
+    @property
+    def floats_on(self) -> tuple[bool, ...]:
+        """True where the yarn comes to its k-th crossing on the side it had at the one before.
+
+        The crossing before the first is the last one, a period earlier.
+        """
+        return tuple(before == high for before, high in zip(self.high[-1:] + self.high[:-1], self.high))
+
 
 def yarns_of(interlacement: np.ndarray) -> tuple[Yarn, ...]:
     """Every yarn of a cell, wefts first, from its interlacement matrix (wefts, warps)."""

@@ -33,7 +33,7 @@ _ROW = (
     "pattern",
     *(f"weft_{quantity}" for quantity in ("density_per_mm", "width_mm", "crimp", "thickness_mm")),
     *(f"warp_{quantity}" for quantity in ("density_per_mm", "width_mm", "crimp", "thickness_mm")),
-    *("fabric_thickness_mm", "section", "lateral_height_mm", "thicker"),
+    *("fabric_thickness_mm", "section", "lateral_height_mm", "float_gap", "thicker"),
     *("weft_linear_density_tex", "warp_linear_density_tex", "fibre_density_g_cm3", "source", "notes"),
 )
 _TRUE, _FALSE = ("true", "yes", "on", "1"), ("false", "no", "off", "0")

@@ -89,6 +89,30 @@ def random_general_row(rng: np.random.Generator, name: str = "general", form: st
     return family, row
 
 
+def random_pattern_row(rng: np.random.Generator, name: str = "pattern", form: str = "") -> tuple[str, dict]:
+    """A general row woven by a random pattern of 2 to 6 wefts and warps."""
+    from fabric_cad.patterns import written
+    from fabric_cad.weaves import pattern_faults
+
+    _, row = random_general_row(rng, name, form)
+    row = {column: value for column, value in row.items() if column not in ("over", "under", "harness", "step")}
+    while True:
+        marks = rng.integers(0, 2, rng.integers(2, 7, size=2))
+        pattern = tuple("".join(map(str, weft)) for weft in marks.tolist())
+        if not pattern_faults(pattern):
+            return "pattern", row | {"pattern": written(pattern)}
+
+
+def flat_gaps(draw):
+    """The same draw of (family, row), its float gaps flat."""
+
+    def drawn(rng: np.random.Generator, *rest, **options) -> tuple[str, dict]:
+        family, row = draw(rng, *rest, **options)
+        return family, row | {"float_gap": "flat"}
+
+    return drawn
+
+
 def skin_of(fabric, yarn):
     """The skin of one yarn of a fabric."""
     from fabric_cad.sweeps import control_planes, control_sections, skin, trajectory

@@ -111,6 +111,7 @@ def _report():
         "row": "plain",
         "family": "plain",
         "section": "lenticular",
+        "float_gap": "symmetric",
         "parameters": 3,
         "weave": {"over": 1, "under": 1, "step": 1, "wefts": 2, "warps": 2},
         "identified": {"weft": direction, "warp": direction},

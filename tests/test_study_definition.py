@@ -42,6 +42,7 @@ weft_density_per_mm = { from = 0.20, to = 0.22, steps = 3 }
 weft_thickness_mm = { distribution = "normal", std = 0.1 }
 fabric_thickness_mm = [0.7, 0.8]
 section = ["lenticular", "round"]
+float_gap = ["symmetric", "flat"]
 """
     )
     assert found.factors["weft_width_mm"] == Normal(3.2, 0.05)
@@ -49,6 +50,7 @@ section = ["lenticular", "round"]
     assert found.factors["weft_thickness_mm"] == Normal(0.37, 0.1)
     assert found.factors["fabric_thickness_mm"] == Values((0.7, 0.8))
     assert found.factors["section"] == Values(("lenticular", "round"))
+    assert found.factors["float_gap"] == Values(("symmetric", "flat"))
     percent = found.factors["weft_crimp_percent"]  # as wide as has the row's standard deviation 0.04 %
     assert (percent.low + percent.high) / 2 == pytest.approx(0.4)
     assert (percent.high - percent.low) / 12**0.5 == pytest.approx(0.04)

@@ -18,6 +18,9 @@ from fabric_cad.study.design import DESIGNS, Samples
 from fabric_cad.study.factors import Values
 from fabric_cad.study.figures import flat, identified_figures
 from fabric_cad.study.rows import base_value, study_rows
+from fabric_cad.study.store import unit_key
+from fabric_cad.study.units import Work
+from fabric_cad.tables import FLOAT_GAPS
 from fabric_cad.volumes import yarn_volumes
 from fabric_cad.weaves import yarns_of
 
@@ -38,7 +41,19 @@ def test_a_unit_is_the_base_row_with_its_factors():
     assert identify(rows)["base_1"] == identify(one)["base_1"]
     assert not rows.scattered.any()
     assert base_value(base, "weft_crimp_percent") == pytest.approx(0.4)
-    assert base_value(base, "section") == "lenticular"
+    assert base_value(base, "section") == "lenticular" and base_value(base, "float_gap") == "symmetric"
+
+
+def test_columns_of_texts_may_vary():
+    rows, refused = sampled(
+        table("twill", TWILL), float_gap=["flat", "symmetric"], section=["lenticular", "lenticular"]
+    )
+    assert not refused and rows.float_gaps == ("flat", "symmetric") and rows.sections == ("lenticular", "lenticular")
+    flat, symmetric = (identify(rows)[name] for name in rows.names)
+    assert (flat.float_gap, symmetric.float_gap) == ("flat", "symmetric")
+    assert replace(flat, name="", float_gap="") == replace(symmetric, name="", float_gap="")
+    keys = {unit_key(rows[name], Work("cell", {}, 600.0, None), False) for name in rows.names}
+    assert len(keys) == 2
 
 
 def test_weave_columns_may_vary():
@@ -92,10 +107,12 @@ def test_bad_rows_are_refused_and_the_others_solved_alone():
         assert {name: values[at] for name, values in found.columns.items()} == alone.row(bad.names[row])
 
 
+@pytest.mark.parametrize("float_gap", FLOAT_GAPS)
 @pytest.mark.parametrize("seed", range(40))
-def test_volumes_are_integrals_of_the_sections(seed):
+def test_volumes_are_integrals_of_the_sections(seed, float_gap):
     draw, form = (random_row, {}) if seed % 2 else (random_general_row, {"form": ("lenticular", "flat")[seed % 4 // 2]})
     family, row = draw(np.random.default_rng(seed), **form)
+    row["float_gap"] = float_gap
     measured = table(family, row)
     found = identify_rows(measured)
     if found.refused:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fabrics import TWILL32, random_general_row, random_row, skin_of, table
+from fabrics import TWILL32, flat_gaps, random_general_row, random_pattern_row, random_row, skin_of, table
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
@@ -14,7 +14,13 @@ from fabric_cad.sweeps import contact_segment, control_planes, control_sections,
 from fabric_cad.weaves import Weave, yarns_of
 
 seeds = st.integers(0, 2**32 - 1)
-rows = pytest.mark.parametrize("draw", [random_row, random_general_row])
+DRAWS = {
+    "standard": random_row,
+    "general": random_general_row,
+    "standard-flat": flat_gaps(random_row),
+    "pattern-flat": flat_gaps(random_pattern_row),
+}
+rows = pytest.mark.parametrize("draw", DRAWS.values(), ids=DRAWS)
 
 
 def fabric_of(draw, seed):

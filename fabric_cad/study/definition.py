@@ -10,7 +10,7 @@ from pathlib import Path
 from ..errors import InputError, Problem, did_you_mean
 from ..pipeline import find_row
 from ..simulation.settings import read_settings
-from ..tables import MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
+from ..tables import FLOAT_GAPS, MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
 from ..toml_files import read_toml
 from ..weaves import DIRECTIONS
 from .design import DESIGNS, RANDOM
@@ -19,7 +19,7 @@ from .rows import CHOICES, base_value, kept_column, weave_cells, weave_fault
 from .units import DEPTHS, Work
 
 _MESH = {"size": float, "across": int, "crossing": int, "through": int, "gap": int}
-_TEXTS = {"section": SECTIONS, "thicker": DIRECTIONS}
+_TEXTS = {"section": SECTIONS, "float_gap": FLOAT_GAPS, "thicker": DIRECTIONS}
 _FACTOR_KEYS = {"uniform": ("from", "to", "steps"), "normal": ("mean", "std")}
 MOST_UNITS = 10_000_000
 """Most units a study may have."""

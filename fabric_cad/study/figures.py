@@ -88,7 +88,7 @@ def identified_figures(table: Family, found: Identified) -> dict[str, Sequence]:
     figures |= {"weave.wefts": wefts, "weave.warps": warps}
     if patterned.any():
         figures["weave.pattern"] = solved["pattern"]
-    figures |= {"section": solved["section"], "parameters": solved["parameters"]}
+    figures |= {name: solved[name] for name in ("section", "float_gap", "parameters")}
     for d in DIRECTIONS:
         p_first, p_second = (np.abs(solved[f"p{1 + DIRECTIONS.index(d)}{k}"]) for k in (1, 2))
         low, high = (p_first, p_second) if d == "weft" else (p_second, p_first)

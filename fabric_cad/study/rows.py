@@ -15,7 +15,7 @@ from ..tables import MEASURED, MOST_YARNS, OTHER_UNITS, WEAVE_COLUMNS, Family
 from ..weaves import Weave, pattern_faults, weave_of
 from .design import Samples
 
-CHOICES = ("section", "thicker")
+CHOICES = {"section": "sections", "float_gap": "float_gaps", "thicker": "thicker"}
 """Columns of texts a factor may choose among."""
 
 
@@ -40,7 +40,7 @@ def base_value(base: Family, column: str) -> object:
     if column in WEAVE_COLUMNS[base.family]:
         return weave_cells(base)[column]
     if column in CHOICES:
-        return {"section": base.sections, "thicker": base.thicker}[column][0]
+        return getattr(base, CHOICES[column])[0]
     kept, unit = kept_column(column)
     return float(base.measured[kept][0]) / unit
 
@@ -53,12 +53,10 @@ def study_rows(base: Family, samples: Samples) -> tuple[Family, dict[int, Proble
     units = len(samples)
     (name,) = base.names
     repeated = base.take([0] * units)
-    measured, sections, thicker = dict(repeated.measured), repeated.sections, repeated.thicker
+    measured, choices = dict(repeated.measured), {}
     for column, values in samples.values.items():
-        if column == "section":
-            sections = tuple(values.tolist())
-        elif column == "thicker":
-            thicker = tuple(values.tolist())
+        if column in CHOICES:
+            choices[CHOICES[column]] = tuple(values.tolist())
         elif column not in WEAVE_COLUMNS[base.family]:
             kept, unit = kept_column(column)
             measured[kept] = np.asarray(values, dtype=float) * unit
@@ -70,8 +68,7 @@ def study_rows(base: Family, samples: Samples) -> tuple[Family, dict[int, Proble
         weaves=weaves,
         measured=measured,
         scatter={column: np.full(units, np.nan) for column in MEASURED},
-        sections=sections,
-        thicker=thicker,
+        **choices,
     )
     refused = {at: table.problem(at, column, message) for at, (column, message) in faults.items()}
     return table, out_of_bounds(table) | refused

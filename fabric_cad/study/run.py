@@ -115,7 +115,8 @@ def _digest(study: Study) -> str:
     from .. import __version__
 
     measured = {name: float(values[0]).hex() for name, values in sorted(study.base.measured.items())}
-    parts = [__version__, study.base.family, repr(study.base.weaves), study.base.sections, study.base.thicker, measured]
+    parts = [__version__, study.base.family, repr(study.base.weaves), study.base.sections]
+    parts += [study.base.float_gaps, study.base.thicker, measured]
     parts += [study.factors, study.design, study.samples, study.seed, study.work, study.figures]
     return hashlib.sha256(repr(parts).encode()).hexdigest()
 
