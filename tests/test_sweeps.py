@@ -17,8 +17,7 @@ seeds = st.integers(0, 2**32 - 1)
 DRAWS = {
     "standard": random_row,
     "general": random_general_row,
-    "standard-flat": flat_gaps(random_row),
-    "pattern-flat": flat_gaps(random_pattern_row),
+    "flat gaps": flat_gaps(random_pattern_row),
 }
 rows = pytest.mark.parametrize("draw", DRAWS.values(), ids=DRAWS)
 
