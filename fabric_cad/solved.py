@@ -26,6 +26,8 @@ from pathlib import Path
 
 from .columns import FLOAT_GAPS
 from .errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
+from .numerals import number as number_of
+from .numerals import whole
 from .sections import KINDS, ContactSide, Frame, FreeSide
 from .weaves import Weave
 
@@ -116,7 +118,8 @@ class SolvedFabric:
         """A fabric from one row of a solved table, cells as text or numbers. Raises KeyError, ValueError."""
 
         def number(column: str) -> float:
-            return float(row[column])
+            value = row[column]
+            return number_of(value) if isinstance(value, str) else float(value)
 
         parabolas = {
             "weft": {"low": abs(number("p11")), "high": abs(number("p12"))},
@@ -154,16 +157,17 @@ class SolvedFabric:
         return cls(
             name=str(row["name"]),
             family=str(row["family"]),
-            weave=Weave(int(row["over"]), int(row["under"]), int(row["step"]), tuple(str(row["pattern"]).split())),
+            weave=Weave(*(whole(str(row[key])) for key in _FLOATS), tuple(str(row["pattern"]).split())),
             section=str(row["section"]),
-            lateral_height=float(row["lateral_height_mm"]),
+            lateral_height=number("lateral_height_mm"),
             float_gap=float_gap,
-            fabric_thickness=float(row["fabric_thickness_mm"]),
+            fabric_thickness=number("fabric_thickness_mm"),
             weft=direction("weft", "warp"),
             warp=direction("warp", "weft"),
         )
 
 
+_FLOATS = ("over", "under", "step")
 _FREE_SIDE = ("q", "v0_mm", "left_mm", "right_mm")
 _SCALARS = ("crossed_spacing_mm", "width_mm", "thickness_mm", "crimp", "slope", "amplitude_mm")
 
@@ -234,6 +238,8 @@ def read_solved(path: str | Path, name: str | None = None) -> SolvedFabric:
             rows = list(csv.DictReader(file))
     except OSError as error:
         raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(Problem(f"not a table of text: {error}", str(path))) from error
     rows = [row for row in rows if name in (None, row.get("name"))]
     if not rows:
         raise InputError(Problem("the table has no such row" if name else "the table is empty", str(path), row=name))
