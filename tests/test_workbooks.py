@@ -85,7 +85,7 @@ def test_a_workbook_is_its_csv(here, write, family):
     import csv
 
     def cell(column, text):
-        number = column not in ("name", "pattern", "section", "thicker", "source", "notes") and text
+        number = column not in ("name", "pattern", "section", "float_gap", "thicker", "source", "notes") and text
         return (float(text) if number else text) or None
 
     path = Path(f"families/{family}.csv")
