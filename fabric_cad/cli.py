@@ -527,6 +527,8 @@ def _show_row(settings, name: str) -> None:
 
 def _study(settings) -> int:
     from .study import read_study, run_study
+    from .study.answer import answer_lines, reasons_lines
+    from .study.sensitivity import read_sensitivities
 
     study = read_study(settings.file, settings.families)
     progress = _Units(settings.quiet)
@@ -534,12 +536,16 @@ def _study(settings) -> int:
         counts = run_study(study, settings.out, settings.scheduler, settings.workers, progress)
     finally:
         progress.end()
+    for note in counts.notes:
+        complain(f"note: {note}")
     if not settings.quiet:
         units = counts.done + counts.refused + counts.failed
         say(
             f"{study.name}: {units} units: {counts.done} done, {counts.refused} refused, {counts.failed} failed"
             + (f"; {counts.before} of them needed no run" if counts.before else "")
         )
+        for line in [*reasons_lines(counts.reasons), *answer_lines(study.design, read_sensitivities(counts.folder))]:
+            say(line)
         for name in ("table.parquet", "table.csv", "sensitivity.csv", "sensitivity.png"):
             if (counts.folder / name).exists():
                 say(f"  {counts.folder / name}")

@@ -16,8 +16,12 @@ import pytest
 
 from fabric_cad.cli import main
 from fabric_cad.errors import OutputError
+from fabric_cad.identification import identify_rows
 from fabric_cad.pipeline import find_row, make_cell
 from fabric_cad.study import read_study, run_study
+from fabric_cad.study.figures import identified_figures
+from fabric_cad.study.names import figure_names
+from fabric_cad.study.sensitivity import read_sensitivities
 from fabric_cad.study.store import held
 from fabric_cad.study.table import read_table
 
@@ -92,11 +96,88 @@ def test_a_finished_identify_study_is_left_alone(here):
     assert Path("build/study/table.parquet").stat().st_mtime_ns > stamp
 
 
-def test_a_figure_that_is_none_is_told(here, capsys):
-    Path("a.toml").write_text("figures = ['volumes.yarn']\n" + SOBOL)
+@pytest.mark.parametrize(
+    ("depth", "figure", "told"),
+    [
+        ("cell", "volumes.yarn", "'volumes.yarn' is no figure of depth cell; did you mean volumes.yarn_mm3?"),
+        ("mesh", "bogus", "'bogus' is no figure of depth mesh; there are "),
+        ("cell", "mesh.nodes", "'mesh.nodes' is a figure of depth mesh, this study is of depth cell"),
+        ("identify", "tension.k=1.E11", "'tension.k=1.E11' is a figure of depth tension, "),
+        (
+            "tension",
+            "tension.k=3.E11",
+            "'tension.k=3.E11' is no figure of depth tension; did you mean tension.k=",
+        ),
+        ("cell", "section", "'section' is no figure of depth cell"),
+    ],
+)
+def test_a_figure_that_is_none_is_refused_before_any_unit_runs(here, capsys, depth, figure, told):
+    text = f"base = 'plain'\ndesign = 'one-at-a-time'\ndepth = '{depth}'\nfigures = ['{figure}']\n"
+    Path("a.toml").write_text(text + "factors = { weft_width_mm = [2.8] }\n")
     assert main(["study", "a.toml"]) == 2
-    assert capsys.readouterr().err.startswith("volumes.yarn: no such figure; a has weave.over, ")
-    assert not Path("build/a/table.csv").exists()
+    assert capsys.readouterr().err.startswith(f"a.toml:4: figures: {told}")
+    assert not Path("build/a").exists()
+
+
+def test_a_figure_that_no_row_can_have_is_refused_before_any_unit_runs(here, capsys):
+    Path("study.toml").write_text(cells("cell", "figures = ['volumes.areal_density_g_m2']"))
+    assert main(["study", "study.toml"]) == 2
+    told = "study.toml: figures: volumes.areal_density_g_m2: no fabric of this study has it"
+    assert capsys.readouterr().err.startswith(told) and not lines()
+
+
+def test_every_figure_of_an_identify_study_is_known_by_name(here):
+    for name in ("plain_measured", "twill22_measured", "satin5", "basket22"):
+        row = find_row("families", name)[0]
+        figures = identified_figures(row, identify_rows(row))
+        numbers = {figure for figure, values in figures.items() if np.array(values).dtype.kind in "if"}
+        assert numbers <= set(figure_names("identify"))
+
+
+def test_a_constant_figure_is_said_to_be_one_and_has_no_row(here, capsys):
+    figures = "figures = ['identified.weft.spacing_mm', 'identified.weft.thickness_mm']\n"
+    text = "base = 'plain_unbalanced'\ndesign = '{}'\n{}" + figures
+    text += "factors = {{ weft_crimp = {{ from = 0.003, to = 0.004, steps = 5 }} }}\n"
+    for design, more in (("sobol", "samples = 8\n"), ("grid", ""), ("latin-hypercube", "samples = 9\n")):
+        Path("study.toml").write_text(text.format(design, more))
+        assert main(["study", "study.toml"]) == 0
+        told = capsys.readouterr().err
+        assert "note: identified.weft.spacing_mm has no sensitivities: it is " in told and told.count("note") == 1
+        content = Path("build/study/sensitivity.csv").read_text()
+        assert "nan" not in content and "spacing" not in content and "identified.weft.thickness_mm," in content
+
+
+def test_no_sensitivities_of_an_earlier_study_stay(here):
+    text = "base = 'plain'\ndesign = 'one-at-a-time'\nfigures = ['{}']\nfactors = {{ weft_crimp = [0.003] }}\n"
+    run_study(study(text.format("identified.weft.crimp")))
+    assert Path("build/study/sensitivity.csv").exists()
+    run_study(study(text.format("identified.weft.spacing_mm")))
+    assert not Path("build/study/sensitivity.csv").exists() and not Path("build/study/sensitivity.png").exists()
+
+
+def test_the_answer_is_printed_the_factor_that_matters_most_first(here, capsys):
+    Path("study.toml").write_text(SOBOL)
+    for _ in range(2):  # also of a study that is finished
+        assert main(["study", "study.toml"]) == 0
+        said = capsys.readouterr().out.splitlines()
+        at = said.index("identified.fabric_thickness_mm depends on")
+        printed = [line.split()[:2] for line in said[at + 1 : at + 4]]
+        rows = [row for row in read_sensitivities("build/study") if row["figure"] == "identified.fabric_thickness_mm"]
+        ranked = sorted(rows, key=lambda row: -abs(row["total"]))
+        assert printed == [[row["factor"], f"{row['total']:.2f}"] for row in ranked]
+    refused = [line for line in said if " refused: weft_width_mm: such as" in line or " refused: such as" in line]
+    assert len(refused) == 1 and "is not below the weft spacing" in refused[0]
+
+
+@pytest.mark.parametrize("name", ["", "units", "cells", "table.parquet", "sensitivity.png"])
+def test_what_stands_in_the_way_is_told_before_any_unit_runs(here, capsys, name):
+    path, is_file = Path("build/study", name), "." not in name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("mine") if is_file else path.mkdir()
+    Path("study.toml").write_text(cells("cell", "keep = true"))
+    assert main(["study", "study.toml"]) == 1
+    assert capsys.readouterr().err == f"{path}: is in the way, it is {'not ' * is_file}a folder\n"
+    assert path.is_file() == is_file and not (name and name != "units" and lines())
 
 
 def test_a_mesh_study_on_a_cluster(here, cluster):
@@ -110,6 +191,10 @@ def test_a_mesh_study_on_a_cluster(here, cluster):
     report = make_cell(row, "build", {"across": 6, "gap": 2})
     assert (found["mesh.hexahedra"] == report["mesh"]["hexahedra"]).all()
     assert (found["mesh.min_scaled_jacobian"] > 0.2).all()
+    numbers = {name for name in found if "." in name and found[name].dtype.kind in "if"}
+    assert {name for name in numbers if name.startswith(("mesh.", "consistency."))} and numbers <= set(
+        figure_names("mesh")
+    )
     assert (found["consistency.max_penetration_mm"] < 1e-12).all()
     with open("build/study/costs.csv", newline="") as file:
         costs = list(csv.DictReader(file))
@@ -134,13 +219,20 @@ def test_kept_files_are_in_a_folder_of_the_unit(here, cluster):
     assert report["identified"]["weft"]["width_mm"] == 4.4 and "mesh" not in report
 
 
-def test_a_unit_over_its_limit_is_recorded_as_failed_and_not_tried_again(here):
-    text = cells("cell", "limit_seconds = 0.2", (2.8, 4.4))  # loading CadQuery takes longer
-    one = run_study(study(text), workers=2)
-    assert (one.done, one.failed) == (0, 2)
-    reason = read_table("build/study")["reason"][0]
-    assert reason == "twice its worker died or took longer than limit_seconds = 0.2"
-    assert run_study(study(text), workers=2).before == 2
+def test_a_unit_that_failed_is_tried_again_and_one_that_is_done_is_not(here):
+    told = []
+    one = run_study(
+        study(cells("cell", "limit_seconds = 0.05", (2.8, 3.6))), workers=2
+    )  # CadQuery takes longer to load
+    assert (one.done, one.failed, one.before) == (0, 2, 0)
+    reason = "twice its worker died or took longer than limit_seconds = 0.05"
+    assert one.reasons == (("failed", reason),) * 2 and read_table("build/study")["reason"].tolist() == [reason] * 2
+
+    two = run_study(study(cells("cell", "limit_seconds = 300", (2.8, 3.6))), workers=2, listen=told.append)
+    assert (two.done, two.failed, two.before) == (2, 0, 0)
+    assert (told[0].finished, told[-1].finished, told[-1].units) == (0, 2, 2)
+    three = run_study(study(cells("cell", "limit_seconds = 0.05", (2.8, 3.6))), workers=2)
+    assert (three.done, three.before) == (2, 2)
 
 
 def test_another_run_of_the_same_study_is_told_so(here, capsys):

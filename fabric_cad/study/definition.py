@@ -9,12 +9,13 @@ from pathlib import Path
 
 from ..errors import InputError, Problem, did_you_mean
 from ..pipeline import find_row
-from ..simulation.settings import read_settings
+from ..simulation.settings import Settings, read_settings
 from ..tables import FLOAT_GAPS, MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
 from ..toml_files import read_toml
 from ..weaves import DIRECTIONS
 from .design import DESIGNS, RANDOM
 from .factors import Factor, Normal, Uniform, Values
+from .names import figure_fault
 from .rows import CHOICES, base_value, kept_column, weave_cells, weave_fault
 from .units import DEPTHS, Work
 
@@ -128,6 +129,7 @@ class _Reader:
         figures = found.get("figures", [])
         if not all(isinstance(each, str) for each in figures):
             self.wrong(f"{figures!r} is not a list of texts", "figures")
+            figures = []
         mesh = self.of_kind(found.get("mesh", {}), _MESH, "mesh.")
         if mesh and depth in ("identify", "cell"):
             self.wrong(f"has no meaning at depth {depth}", "mesh")
@@ -137,9 +139,13 @@ class _Reader:
         factors = self.factors(base, found.get("factors", {}), design) if base is not None else {}
         if base is not None and not self.problems:
             self.check_size(factors, design, found.get("samples", 0))
+        settings = None
+        if depth == "tension" and base is not None:
+            settings = read_settings(families, base.names[0])
+        if base is not None and ("depth" in found or "depth" not in self.content):
+            self.check_figures(figures, depth, settings)
         if self.problems:
             raise InputError(self.problems)
-        settings = read_settings(families, base.names[0]) if depth == "tension" else None
         return Study(
             name=self.path.stem,
             base=base,
@@ -151,6 +157,11 @@ class _Reader:
             figures=tuple(figures),
             keep=found.get("keep", False),
         )
+
+    def check_figures(self, figures: list[str], depth: str, settings: Settings | None) -> None:
+        for name in figures:
+            if fault := figure_fault(name, depth, settings):
+                self.wrong(fault, "figures")
 
     def check_samples(self, found: dict, design: str | None) -> None:
         for key, least in (("samples", 1), ("seed", 0)):

@@ -20,8 +20,9 @@ from .definition import Study
 from .design import DESIGNS, Samples
 from .engine import run_tasks
 from .figures import identified_figures
+from .places import check_places
 from .rows import base_value, study_rows
-from .sensitivity import sensitivities
+from .sensitivity import left_out, read_sensitivities, sensitivities
 from .store import Store, held, unit_key
 from .table import write_table, written_digest
 from .units import Outcome, reason_of, run_unit
@@ -49,13 +50,18 @@ class Progress:
 
 @dataclass(frozen=True)
 class Counts:
-    """What became of a study's units; ``before`` were finished by earlier runs."""
+    """What became of a study's units; ``before`` were finished by earlier runs.
+
+    ``reasons`` are (status, reason) of every refused or failed unit, ``notes`` what else is to be told.
+    """
 
     folder: Path
     done: int
     refused: int
     failed: int
     before: int
+    reasons: tuple[tuple[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def run_study(
@@ -70,9 +76,11 @@ def run_study(
     Leaves ``table.parquet`` and ``table.csv`` (one row a unit: factors, status, reason, figures),
     ``sensitivity.csv`` and ``sensitivity.png`` where something varies, ``costs.csv`` (times and memory of
     every unit, not at depth identify) and, where the study keeps them, the units' files in ``cells``.
-    Raises :class:`FabricCadError`; what is finished stays.
+    Units that failed in an earlier run are tried again. Raises :class:`FabricCadError`; what is finished stays.
     """
     folder = Path(out) / study.name
+    check_places(folder, study.keep)
+    notes: list[str] = []
     with held(folder):
         digest = _digest(study)
         written = written_digest(folder)  # and a lack of pyarrow is told before any work
@@ -85,16 +93,20 @@ def run_study(
         part = table.take(good) if refused else table
         found = identify_rows(part)
         reasons |= {int(good[at]): reason_of(InputError(problem)) for at, problem in found.refused.items()}
+        identified = identified_figures(part, found) if study.figures or study.work.depth == "identify" else {}
+        _check_figures(study, identified)
         if study.work.depth == "identify":
-            figures = _spread(identified_figures(part, found), good[found.rows], len(table))
+            figures = _spread(identified, good[found.rows], len(table))
             status = ["done"] * len(table)
             for at in reasons:
                 status[at] = "refused"
             costs, finished = {}, written == digest
             before = len(table) if finished else 0
         else:
+            store = Store(folder)
+            notes += _damage(store)
             outcomes, before = _run_units(
-                study, folder, table, good[found.rows].tolist(), scheduler, workers, listen, len(reasons)
+                study, store, folder, table, good[found.rows].tolist(), scheduler, workers, listen, len(reasons)
             )
             status = ["refused"] * len(table)
             for at, outcome in outcomes.items():
@@ -106,8 +118,28 @@ def run_study(
             finished = False
         if not finished:
             _write(study, folder, samples, status, reasons, figures, costs, digest)
+        notes += left_out(study.figures, figures, read_sensitivities(folder))
         counts = {name: status.count(name) for name in ("done", "refused", "failed")}
-        return Counts(folder, **counts, before=before)
+        why = tuple((status[at], reasons[at]) for at in sorted(reasons))
+        return Counts(folder, **counts, before=before, reasons=why, notes=tuple(notes))
+
+
+def _check_figures(study: Study, identified: Mapping[str, Sequence]) -> None:
+    """Raise :class:`InputError` where no fabric of a study can have a figure that is asked for."""
+    known_by_now = ("weave.", "identified.", "measured_vs_model.", "volumes.")
+    missing = [name for name in study.figures if name.startswith(known_by_now) and name not in identified]
+    if missing:
+        message = f"{', '.join(missing)}: no fabric of this study has it; its rows lack what that needs"
+        raise InputError(Problem(message, f"{study.name}.toml", column="figures"))
+
+
+def _damage(store: Store) -> list[str]:
+    """What to say of a store's damaged lines."""
+    if not store.damaged:
+        return []
+    count = len(store.damaged)
+    what = "1 line is" if count == 1 else f"{count} lines are"
+    return [f"{what} not as written by a study ({store.damaged[0]}): passed over, their units are run again"]
 
 
 def _digest(study: Study) -> str:
@@ -145,14 +177,13 @@ def _gathered(cells: Mapping[int, Mapping], units: int) -> dict[str, list]:
 
 
 def _run_units(
-    study: Study, folder: Path, table: Family, rows: list[int], scheduler, workers, listen, refused: int
+    study: Study, store: Store, folder: Path, table: Family, rows: list[int], scheduler, workers, listen, refused: int
 ) -> tuple[dict[int, Outcome], int]:
     """Outcome of every fabric by unit number, and how many were there before."""
     units = {at: table.take([at]) for at in rows}
     keys = {at: unit_key(unit, study.work, study.keep) for at, unit in units.items()}
     cells = str((folder / "cells").absolute()) if study.keep else None
     copies = Counter(keys.values())
-    store = Store(folder)
     missing = {key: at for at, key in reversed(keys.items()) if key not in store.outcomes}  # equal units once
     missing = dict(reversed(missing.items()))
     before = refused + sum(key in store.outcomes for key in keys.values())
@@ -197,8 +228,6 @@ def _write(study: Study, folder: Path, samples: Samples, status, reasons, figure
     units = len(samples)
     columns = {"unit": np.arange(units), **samples.labels, **samples.values}
     columns |= {"status": status, "reason": [reasons.get(at) for at in range(units)], **figures}
-    if unknown := [name for name in study.figures if name not in figures]:
-        raise InputError(Problem(f"{', '.join(unknown)}: no such figure; {folder.name} has {', '.join(figures)}"))
     found = sensitivities(study.design, samples, figures, study.figures)
     with staged(folder, last="table.parquet") as aside:  # its digest says that the others are there
         write_table(columns, aside, digest)
@@ -210,10 +239,13 @@ def _write(study: Study, folder: Path, samples: Samples, status, reasons, figure
         if costs:
             rows = [dict(zip(costs, values)) for values in zip(*costs.values())]
             _write_csv(aside / "costs.csv", [{"unit": at, **row} for at, row in enumerate(rows)])
+    if not found:  # there may be those of what the study was before
+        for name in ("sensitivity.csv", "sensitivity.png"):
+            (folder / name).unlink(missing_ok=True)
 
 
 def _write_csv(path: Path, rows: Sequence[dict]) -> None:
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)))
         writer.writeheader()
-        writer.writerows(rows)
+        writer.writerows({key: "" if value != value else value for key, value in row.items()} for row in rows)

@@ -32,15 +32,41 @@ def sensitivities(
 ) -> list[Row]:
     """One row a figure and factor; figures are columns of shape (units,), NaN where a unit has none.
 
-    Without ``asked`` those of :data:`~fabric_cad.study.figures.HEADLINE` that vary.
+    Those ``asked`` for, else those of :data:`~fabric_cad.study.figures.HEADLINE`; one that does not vary has no row.
     """
     rows: list[Row] = []
     for name in asked or HEADLINE:
-        values = np.array(figures[name], dtype=float) if name in figures else np.array([np.nan])
-        there = values[~np.isnan(values)]
-        if asked or (len(there) and np.ptp(there) > 1e-12 * np.abs(there).max()):
-            rows += [{"figure": name, **row} for row in METHODS[design](samples, values)] if len(there) else []
+        values = _numbers(figures.get(name, [None]))
+        if _vary(values):
+            rows += [{"figure": name, **row} for row in METHODS[design](samples, values)]
     return rows
+
+
+def left_out(asked: Sequence[str], figures: Mapping[str, Sequence], rows: Sequence[Row]) -> list[str]:
+    """Why figures that were asked for have no row in ``rows``, a sentence each."""
+    notes = []
+    for name in dict.fromkeys(asked):
+        if any(row["figure"] == name for row in rows):
+            continue
+        values = _numbers(figures.get(name, [None]))
+        if np.isnan(values).all():
+            notes.append(f"{name} has no sensitivities: no unit has it")
+        elif not _vary(values):
+            value = values[~np.isnan(values)][0]
+            notes.append(f"{name} has no sensitivities: it is {value:.6g} in every unit, whatever the factors")
+        else:
+            notes.append(f"{name} has no sensitivities: too few units have it")
+    return notes
+
+
+def _numbers(values: Sequence) -> np.ndarray:
+    return np.array(values, dtype=float)
+
+
+def _vary(values: np.ndarray) -> bool:
+    """Whether there are two values that differ by more than rounding."""
+    there = values[~np.isnan(values)]
+    return len(there) > 0 and bool(np.ptp(there) > 1e-12 * np.abs(there).max())
 
 
 def sobol_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
@@ -57,13 +83,19 @@ def sobol_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
         return []
     used = 2 ** int(np.log2(len(whole)))
     blocks = blocks[:, whole[:used]]
+    if not _vary(blocks.ravel()):
+        return []
+
+    factors = len(samples.values)
 
     def indices(at: np.ndarray) -> np.ndarray:
         first, second, *mixed = blocks[:, at]
+        mixed *= 2 if factors == 1 else 1  # scipy 1.17 fails with one factor alone
         found = stats.sobol_indices(
             func={"f_A": first[None], "f_B": second[None], "f_AB": np.array(mixed)[:, None]}, n=used
         )
-        return np.array([np.atleast_1d(found.first_order), np.atleast_1d(found.total_order)]).reshape(2, -1)
+        orders = np.array([found.first_order, found.total_order])
+        return orders.reshape(2, -1)[:, :factors]
 
     everything = indices(np.arange(used))
     spread = stats.bootstrap(
@@ -125,7 +157,7 @@ def rank_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
         if column.dtype.kind not in "if":
             continue
         there = ~np.isnan(values) & ~np.isnan(column.astype(float))
-        if there.sum() > 2 and np.ptp(column[there]) > 0:
+        if there.sum() > 2 and np.ptp(column[there]) > 0 and _vary(values[there]):
             found = stats.spearmanr(column[there], values[there])
             rows.append({"factor": factor, "spearman": float(found.statistic), "p_value": float(found.pvalue)})
     return rows
@@ -140,7 +172,12 @@ METHODS: dict[str, Callable[[Samples, np.ndarray], list[Row]]] = {
 
 
 def read_sensitivities(folder: str | Path) -> list[Row]:
-    """The rows of the ``sensitivity.csv`` in a study's folder; numbers as such, None where a cell is empty."""
+    """The rows of the ``sensitivity.csv`` in a study's folder; numbers as such, None where a cell is empty.
+
+    No rows where there is no such file: no figure varied.
+    """
+    if not (Path(folder) / "sensitivity.csv").exists():
+        return []
     with open(Path(folder) / "sensitivity.csv", newline="", encoding="utf-8") as file:
         texts = ("figure", "factor", "value")
         return [

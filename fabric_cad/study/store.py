@@ -1,6 +1,6 @@
 """Finished units on disk: lines that are only ever added, so that a run may be killed at any moment.
 
-Every run adds to a file of its own, one line of JSON a unit, and a line that a kill left unfinished is
+Every run adds to a file of its own, one line a unit, and lines that a kill or a disk has damaged are
 passed over. A unit is known by a digest of all that its figures depend on, so that a study that was
 changed finds those of its units that are still the same.
 """
@@ -13,12 +13,12 @@ import os
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
 from pathlib import Path
 
 from .. import __version__, locks
 from ..errors import OutputError
 from ..tables import Family
+from .lines import read_line, written_line
 from .units import Outcome, Work
 
 
@@ -32,37 +32,61 @@ def unit_key(row: Family, work: Work, keep: bool) -> str:
 
 
 class Store:
-    """Outcomes by unit key, in a folder ``units`` of the study's own."""
+    """Outcomes by unit key, in a folder ``units`` of the study's own.
+
+    ``outcomes`` holds what is kept: units that are done or refused. A unit that failed may do so no
+    longer (a full disk, a limit since raised), and is to be run again. ``damaged`` are the places of
+    lines that are not as they were written, whose units are run again too.
+    Raises :class:`OutputError` where the folder cannot be read or written.
+    """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder / "units"
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self.outcomes: dict[str, Outcome] = {}
-        for path in sorted(self.folder.glob("*.jsonl")):
-            for key, outcome in _lines(path):
-                self.outcomes.setdefault(key, outcome)
         self.file = None
+        self.outcomes: dict[str, Outcome] = {}
+        self.damaged: list[str] = []
+
+        with _output_errors(self.folder):
+            self.folder.mkdir(parents=True, exist_ok=True)
+            for path in sorted(self.folder.glob("*.jsonl")):
+                self._read(path)
+
+    def _read(self, path: Path) -> None:
+        for number, line in enumerate(path.read_bytes().split(b"\n"), 1):
+            if not line:
+                continue
+            try:
+                key, outcome = read_line(line)
+            except ValueError:
+                self.damaged.append(f"{path}:{number}")
+                continue
+            if outcome.status != "failed":
+                self.outcomes.setdefault(key, outcome)
 
     def add(self, key: str, outcome: Outcome) -> None:
         """Record a unit; it is on the disk when this returns."""
-        if self.file is None:
-            self.file = open(self.folder / f"{os.getpid()}-{secrets.token_hex(4)}.jsonl", "x", encoding="utf-8")
-        self.file.write(json.dumps({"key": key, **asdict(outcome)}) + "\n")
-        self.file.flush()
-        os.fsync(self.file.fileno())
+        with _output_errors(self.folder):
+            if self.file is None:
+                path = self.folder / f"{os.getpid()}-{secrets.token_hex(4)}.jsonl"
+                self.file = open(path, "x", encoding="utf-8")
+            self.file.write(written_line(key, outcome))
+            self.file.flush()
+            os.fsync(self.file.fileno())
         self.outcomes[key] = outcome
 
     def close(self) -> None:
+        """Close the file of this run."""
         if self.file is not None:
-            self.file.close()
+            with suppress(OSError):  # a line that a full disk did not take: add has told so
+                self.file.close()
 
 
-def _lines(path: Path) -> Iterator[tuple[str, Outcome]]:
-    for line in path.read_bytes().split(b"\n"):
-        with suppress(ValueError, KeyError, TypeError):  # a line cut short by a kill
-            record = json.loads(line)
-            key = record.pop("key")
-            yield key, Outcome(**record)
+@contextmanager
+def _output_errors(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(f"{error.filename or folder}: {error.strerror}; what is finished stays") from error
 
 
 @contextmanager

@@ -1,0 +1,97 @@
+"""Names of the figures that a study of each depth can have, known before any of its units has run."""
+
+from __future__ import annotations
+
+from ..closing import CLOSING
+from ..errors import did_you_mean
+from ..simulation.settings import Settings
+from ..solved import point_columns
+from ..weaves import DIRECTIONS
+
+_WEAVE = ("over", "under", "step", "wefts", "warps")
+_DIRECTION = ("slope", "p_low", "p_high", "amplitude_mm", "thickness_mm", "width_mm", "spacing_mm", "crimp")
+_COMPARED = ("measured", "model", "difference_percent")
+_VOLUMES = (
+    "yarn_mm3",
+    "cell_mm3",
+    "yarn_volume_fraction",
+    "areal_density_g_m2",
+    "weft_fibre_fraction",
+    "warp_fibre_fraction",
+)
+_CONSISTENCY = ("max_penetration_mm", "max_contact_gap_mm", "overlap_volume_mm3", "contact_area_mm2", "thickness_mm")
+_MESH = (
+    "nodes",
+    "hexahedra",
+    "other_elements",
+    "min_scaled_jacobian",
+    "median_scaled_jacobian",
+    "scaled_jacobian_edges_allow",
+    "contact_nodes",
+    "coincident_contact_nodes",
+    "end_nodes",
+    "matching_end_nodes",
+)
+_SIZES = ("thickness", "weft_width", "warp_width")
+_STATE = (
+    "E11",
+    "E22",
+    "T11_N_per_yarn",
+    "T22_N_per_yarn",
+    "T11_N_per_mm",
+    "T22_N_per_mm",
+    *(f"{size}_mm" for size in _SIZES),
+    *(f"{size}_change_percent" for size in _SIZES),
+    "contact_penetration_mm",
+    "penetration_mm",
+    "contact_share",
+    "strain_energy_N_mm",
+    "least_volume_ratio",
+)
+_CONTACT = (
+    "max_contact_penetration_mm",
+    "max_penetration_mm",
+    "valid_penetration_mm",
+    "states_beyond",
+    "min_contact_share",
+    "least_volume_ratio",
+)
+
+
+def figure_names(depth: str, settings: Settings | None = None) -> tuple[str, ...]:
+    """Every figure, a number, that a study of a depth may have; ``settings`` tell the curves of depth tension.
+
+    Not every fabric has all of them (an areal density needs linear densities).
+    """
+    names = ["parameters", *(f"weave.{name}" for name in _WEAVE)]
+    for direction in DIRECTIONS:
+        names += [f"identified.{direction}.{name}" for name in _DIRECTION]
+        for _, *place in point_columns(direction):
+            names += [f"identified.{direction}.control_points.{column}" for column in place]
+        names.append(f"identified.other_solution.{direction}_thickness_mm")
+    names.append("identified.fabric_thickness_mm")
+    names += [f"measured_vs_model.{quantity}.{name}" for quantity in CLOSING for name in _COMPARED]
+    names += [f"volumes.{name}" for name in _VOLUMES]
+
+    if depth != "identify":
+        names += [f"consistency.{name}" for name in _CONSISTENCY]
+    if depth in ("mesh", "tension"):
+        names += [f"mesh.{name}" for name in _MESH]
+    if depth == "tension":
+        names += [f"tension.{name}" for name in _CONTACT]
+        ratios = settings.tension.ratios if settings is not None else ()
+        names += [f"tension.k={ratio:g}.{name}" for ratio in ratios for name in _STATE]
+    return tuple(names)
+
+
+def figure_fault(name: str, depth: str, settings: Settings | None = None) -> str | None:
+    """Why a name is that of no figure at a depth, None where it is one."""
+    known = figure_names(depth, settings)
+    if name in known:
+        return None
+    deeper = next((more for more in ("cell", "mesh") if name in figure_names(more)), None)
+    if deeper or name.startswith("tension.k=") and depth != "tension":
+        return f"{name!r} is a figure of depth {deeper or 'tension'}, this study is of depth {depth}"
+
+    hint = did_you_mean(name, known, 0.5) or f"; there are {', '.join(known[-12:])} and others, as in table.csv"
+    return f"{name!r} is no figure of depth {depth}{hint}"
