@@ -186,6 +186,6 @@ def make_cell(
         with stages("write vtu"):
             write_vtu(meshed.mesh, meshed.quality, folder / f"{name}.vtu")
         with stages("picture"):
-            draw_cell(meshed.mesh, folder / f"{name}.png")
+            draw_cell(meshed.mesh, folder / f"{name}.png", name)
         report |= checked_report(made, meshed, stages) | trace(row, options)
     return report

@@ -1,5 +1,5 @@
 """Sections, trajectories and cuts of a solved fabric, as the paper's Fig. 15 to 18 draw them, its models compared, and
-what simulations of its cell gave (Fig. 3, 4 and 22a).
+what simulations of its cell gave (Fig. 3, 4, 22a and 22c).
 
 Each function draws on Matplotlib axes it is given; lengths mm. Those of simulations make a figure of their own where
 they are given none, and return the figure either way.
@@ -8,6 +8,7 @@ they are given none, and return the figure either way.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import BSpline, CloughTocher2DInterpolator
@@ -19,7 +20,7 @@ from .simulation.penetration import valid_until
 from .solved import SolvedFabric, point_columns
 from .splines import Spline
 from .sweeps import control_planes, control_sections, trajectory
-from .weaves import DIRECTIONS, Yarn, yarns_of
+from .weaves import DIRECTIONS, Yarn, direction_of, yarns_of
 
 _POINTS = 41
 _ACROSS = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 301)) / 2  # of a width, closer towards the edges
@@ -224,7 +225,7 @@ def plot_tension_curves(columns: Mapping[str, Sequence[float]], axes=None):
             markersize=3.5,
             label=label,
         )
-    axes.set(xlabel="E11 %", ylabel="T11 N a yarn", title="tension for ratios of strain k = E22/E11")
+    axes.set(xlabel="strain E11, %", ylabel="tension T11, N per yarn", title="constant ratios of strain k = E22/E11")
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
     return figure
@@ -237,7 +238,7 @@ def plot_tension_surface(columns: Mapping[str, Sequence[float]], axes=None):
     points of a grid included; ``k`` is not needed. The surfaces pass smoothly through all points and
     end at their convex hull. Raises ValueError where all points lie on one line.
     """
-    figure, axes = _drawn_on(axes, 2, (11, 5), projection="3d")
+    figure, axes = _drawn_on(axes, (1, 2), (11, 5), projection="3d")
     at = 100 * np.column_stack([columns["E11"], columns["E22"]])
     _, first = np.unique(at.round(9), axis=0, return_index=True)
     at = at[first]
@@ -249,47 +250,89 @@ def plot_tension_surface(columns: Mapping[str, Sequence[float]], axes=None):
         surface = CloughTocher2DInterpolator(at, tension, rescale=True)(*grid)
         ax.plot_surface(*grid, surface, cmap="viridis", vmin=tension.min(), vmax=tension.max(), alpha=0.85, linewidth=0)
         ax.plot(*at.T, tension, linestyle="", marker="o", markersize=3, color="black", zorder=10)
-        ax.set(xlabel="E11 %", ylabel="E22 %", zlabel=f"{name} N a yarn", title=f"tension of the {direction}")
+        ax.set(xlabel="strain E11, %", ylabel="strain E22, %", title=f"tension of the {direction}")
+        ax.set_zlabel(f"{name}, N per yarn")
         ax.locator_params(nbins=5)
         ax.view_init(elev=24, azim=-125)
     return figure
 
 
 def plot_shear_curve(columns: Mapping[str, Sequence[float]], axes=None, allowed: float = 0.01):
-    """Shear moment of a cell and shear force against the angle, and where contact ceases to be valid; the figure.
+    """Shear moment of a cell against the angle, and where contact ceases to be valid; the figure.
 
-    ``columns``, of equal length: ``angle_deg`` ascending, ``moment_N_mm`` of a cell (left axis),
-    ``force_N_per_mm`` (right axis) and ``penetration_mm``. Beyond the angle at which yarns penetrate by
-    more than ``allowed`` mm the ground is grey.
+    ``columns``, of equal length: ``angle_deg`` ascending, ``moment_N_mm`` of a cell, ``force_N_per_mm``
+    and ``penetration_mm``. The force is the moment over the cell's area: one curve, read off on the left
+    as moment and on the right as force. Beyond the angle at which yarns penetrate by more than
+    ``allowed`` mm the ground is grey. Raises ValueError where forces are in no fixed ratio to moments.
     """
     angle, moment, force, depth = (
         np.asarray(columns[name], dtype=float)
         for name in ("angle_deg", "moment_N_mm", "force_N_per_mm", "penetration_mm")
     )
     figure, axes = _drawn_on(axes)
-    right = axes.twinx()
-    first, second = COLOURS["warp"], COLOURS["weft"]
-    lines = axes.plot(angle, moment, color=first, marker="o", markersize=3.5, label="moment")
-    lines += right.plot(angle, force, color=second, marker="s", markersize=3.5, linestyle="--", label="force")
+    axes.plot(angle, moment, color="black", marker="o", markersize=3.5)
+    axes.set(xlabel="shear angle, degrees", ylabel="moment of a cell, N mm", title="in-plane shear")
+    axes.grid(alpha=0.3)
+
+    if moment.any():
+        ratio = (moment @ force) / (moment @ moment)
+        if not np.allclose(force, ratio * moment, rtol=1e-6, atol=1e-9 * np.abs(force).max()):
+            raise ValueError("force_N_per_mm is in no fixed ratio to moment_N_mm")
+        right = axes.secondary_yaxis("right", functions=(lambda value: value * ratio, lambda value: value / ratio))
+        right.set_ylabel("force along a side, N/mm")
+
     if (depth > allowed).any():
         valid = valid_until(angle, depth, allowed)
         label = f"penetration {allowed:g} mm, {valid:.1f}\u00b0"
-        lines.append(axes.axvline(valid, color=_PENETRATION, linewidth=1.2, label=label))
+        axes.axvline(valid, color=_PENETRATION, linewidth=1.2, label=label)
         axes.axvspan(valid, angle[-1], color="0.92", zorder=0)
-    axes.set(xlabel="shear angle, degrees", title="in-plane shear")
-    for ax, name, colour in ((axes, "moment of a cell, N mm", first), (right, "force, N/mm", second)):
-        ax.set_ylabel(name, color=colour)
-        ax.tick_params(axis="y", labelcolor=colour)
-    axes.legend(handles=lines, frameon=False, loc="upper left")
+        axes.legend(frameon=False, loc="upper left")
     return figure
 
 
-def _drawn_on(axes, count: int = 1, size: tuple[float, float] = (7, 4.5), **options):
-    """The figure of the axes given, or a new one of ``count`` beside each other, and its axes."""
+def plot_crushing(cuts: Mapping[str, Sequence], scale: float, axes=None, stretch: float = 3.0):
+    """Cuts of a cell under load, filled, over the cell at rest, dashed (Fig. 22c); the figure.
+
+    ``cuts`` maps the yarn each runs along to its :class:`fabric_cad.views.Outline` list; an axes each.
+    Displacements are drawn ``scale`` times and z ``stretch`` times larger, which the picture says.
+    """
+    shapes = [np.ptp(np.vstack([cut.rest for cut in outlines]), axis=0) for outlines in cuts.values()]
+    heights = [9.0 * stretch * height / width for width, height in shapes]
+    figure, axes = _drawn_on(axes, (len(cuts), 1), (10, 0.6 + sum(heights) + len(cuts)))
+    for ax, (name, outlines) in zip(np.ravel(axes), cuts.items()):
+        direction, number = name.rsplit("_", 1)
+        for outline in outlines:
+            moved = outline.rest + scale * (outline.deformed - outline.rest)
+            ax.fill(*moved.T, color=COLOURS[direction_of(outline.yarn)], alpha=0.75, linewidth=0)
+            ax.plot(*outline.rest.T, color="black", linewidth=0.9, linestyle=(0, (4, 2)))
+        ax.set(aspect=stretch, xlabel="x mm" if direction == "weft" else "y mm", ylabel="z mm")
+        ax.set_title(f"along {direction} {number}", loc="left", fontsize="medium")
+        ax.margins(x=0.01)
+    drawn = f"dashed: at rest; filled: displacements \u00d7 {scale:g}; z is drawn {stretch:g} times larger"
+    np.ravel(axes)[0].set_title(drawn, loc="right", fontsize="medium")
+    return figure
+
+
+def save_figure(figure, path: str | Path, title: str = "") -> None:
+    """Write a figure as PNG (``path``) and, beside it, as PDF: the same bytes for the same figure.
+
+    ``title`` stands above all its axes.
+    """
+    from matplotlib import rc_context
+
+    if title:
+        figure.suptitle(title)
+    figure.savefig(path, dpi=150, metadata={"Software": None})
+    with rc_context({"pdf.fonttype": 42}):  # fonts stay text, for who edits the picture
+        figure.savefig(Path(path).with_suffix(".pdf"), metadata={"CreationDate": None})
+
+
+def _drawn_on(axes, grid: tuple[int, int] = (1, 1), size: tuple[float, float] = (7, 4.5), **options):
+    """The figure of the axes given, or a new one of a ``grid`` (down, across), and its axes."""
     if axes is None:
         from matplotlib.figure import Figure
 
-        axes = Figure(size, layout="constrained").subplots(1, count, subplot_kw=options)
+        axes = Figure(size, layout="constrained").subplots(*grid, subplot_kw=options)
     return np.ravel(axes)[0].figure, axes
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from fabric_cad.plots import plot_shear_curve, plot_tension_curves, plot_tension_surface
+from fabric_cad.plots import plot_crushing, plot_shear_curve, plot_tension_curves, plot_tension_surface, save_figure
+from fabric_cad.views import Outline
 
 RATIOS = (0.0, 0.5, 1.0, 2.0, np.inf)
 
@@ -33,7 +34,7 @@ def shear(depth=0.002):
 def test_a_curve_for_every_ratio_in_per_cent_and_ascending():
     columns = tension()
     (axes,) = plot_tension_curves(columns).axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("E11 %", "T11 N a yarn")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("strain E11, %", "tension T11, N per yarn")
     labels = [line.get_label() for line in axes.lines]
     assert labels == ["k = 0", "k = 0.5", "k = 1", "k = 2", "k = ∞, T22 against E22"]
     assert [text.get_text() for text in axes.get_legend().get_texts()] == labels
@@ -51,7 +52,8 @@ def test_surfaces_hold_every_point_once():
     first, second = plot_tension_surface(columns).axes
     points = {(round(a, 9), round(b, 9)) for a, b in zip(columns["E11"], columns["E22"])}
     for axes, name in ((first, "T11"), (second, "T22")):
-        assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()) == ("E11 %", "E22 %", f"{name} N a yarn")
+        assert (axes.get_xlabel(), axes.get_ylabel()) == ("strain E11, %", "strain E22, %")
+        assert axes.get_zlabel() == f"{name}, N per yarn"
         x, y, z = axes.lines[0].get_data_3d()
         assert len(x) == len(points) and max(z) == pytest.approx(max(columns[name]))
         assert max(x) == max(y) == pytest.approx(0.4)
@@ -61,18 +63,47 @@ def test_surfaces_hold_every_point_once():
         plot_tension_surface(line)
 
 
-def test_shear_curve_and_the_angle_at_which_contact_ceases_to_be_valid():
+def test_shear_is_one_curve_read_off_as_moment_and_as_force():
     columns = shear()
-    left, right = plot_shear_curve(columns, allowed=0.011).axes
-    assert left.get_xlabel() == "shear angle, degrees"
-    assert (left.get_ylabel(), right.get_ylabel()) == ("moment of a cell, N mm", "force, N/mm")
-    assert left.lines[0].get_ydata() == pytest.approx(columns["moment_N_mm"])
-    assert right.lines[0].get_ydata() == pytest.approx(columns["force_N_per_mm"])
-    assert left.lines[1].get_xdata() == pytest.approx([5.5, 5.5])
-    texts = [text.get_text() for text in left.get_legend().get_texts()]
-    assert texts == ["moment", "force", "penetration 0.011 mm, 5.5°"]
-    left, _ = plot_shear_curve(shear(depth=0.0)).axes
-    assert len(left.lines) == 1
+    (axes,) = plot_shear_curve(columns, allowed=0.011).axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("shear angle, degrees", "moment of a cell, N mm")
+    assert axes.lines[0].get_ydata() == pytest.approx(columns["moment_N_mm"])
+    (right,) = axes.child_axes
+    assert right.get_ylabel() == "force along a side, N/mm"
+    axes.figure.draw_without_rendering()
+    assert np.array(right.get_ylim()) == pytest.approx(np.array(axes.get_ylim()) / 80)
+    with pytest.raises(ValueError, match="no fixed ratio"):
+        plot_shear_curve(columns | {"force_N_per_mm": columns["angle_deg"]})
+
+
+def test_shear_shows_the_angle_at_which_contact_ceases_to_be_valid():
+    (axes,) = plot_shear_curve(shear(), allowed=0.011).axes
+    assert axes.lines[1].get_xdata() == pytest.approx([5.5, 5.5])
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["penetration 0.011 mm, 5.5°"]
+    (axes,) = plot_shear_curve(shear(depth=0.0)).axes
+    assert len(axes.lines) == 1 and axes.get_legend() is None
+
+
+def test_cuts_show_displacements_larger_over_the_cell_at_rest():
+    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
+    cuts = {name: [Outline(name, square, square * [1.0, 0.9])] for name in ("weft_1", "warp_1")}
+    first, second = plot_crushing(cuts, 5.0).axes
+    assert (first.get_xlabel(), second.get_xlabel()) == ("x mm", "y mm")
+    assert "\u00d7 5" in first.get_title("right") and first.get_title("left") == "along weft 1"
+    for axes in (first, second):
+        assert axes.lines[0].get_xydata() == pytest.approx(square)
+        assert axes.patches[0].get_xy()[:5] == pytest.approx(square * [1.0, 0.5])
+
+
+def test_a_figure_is_saved_as_png_and_pdf_the_same_every_time(tmp_path):
+    content = []
+    for name in ("a", "b"):
+        save_figure(plot_tension_curves(tension()), tmp_path / f"{name}.png", "plain: tension")
+        files = [tmp_path / f"{name}.png", tmp_path / f"{name}.pdf"]
+        content.append([file.read_bytes() for file in files])
+    assert content[0] == content[1]
+    png, pdf = content[0]
+    assert png[:4] == b"\x89PNG" and pdf[:4] == b"%PDF" and b"CreationDate" not in pdf
 
 
 def test_figures_are_those_of_the_axes_given():

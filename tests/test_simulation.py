@@ -270,12 +270,34 @@ def small(folder):
     return families
 
 
+def series(path):
+    """Times and grids of a series, as ParaView reads them."""
+    import pyvista
+
+    reader = pyvista.get_reader(path)
+    found = []
+    for time in reader.time_values:
+        reader.set_active_time_value(time)
+        found.append((time, reader.read()[0]))
+    return found
+
+
+def virial(state, length):
+    """What the wefts and the warps pull with, N: their stress along x and y summed over the volume, by a length (mm).
+
+    The fibres carry nearly all of it, along axes that rise and fall.
+    """
+    volume = np.abs(state.compute_cell_sizes(length=False, area=False).cell_data["Volume"])
+    along = state.cell_data["stress_fibre_MPa"][:, None] * state.cell_data["fibre_axis"][:, :2] ** 2
+    return (along * volume[:, None]).sum(axis=0) / length
+
+
 def test_the_commands_leave_their_files(tmp_path, capsys):
     families, out = small(tmp_path), tmp_path / "build"
     here = ["--families", str(families), "--out", str(out)]
     assert main(["tension", "plain_flat", *here]) == 0
     said = capsys.readouterr()
-    assert "T11 N/yarn" in said.out and "state 3 of 3" in said.err
+    assert "T11 N per yarn" in said.out and "state 3 of 3" in said.err
     assert main(["shear", "plain_flat", *here, "--across", "4", "-q"]) == 0
     (families / "simulation.toml").write_text("[tension]\nratios = [1]\npoints = 1\ngrid = 0\n")
     assert main(["tension", "plain", *here, "--across", "4", "-q"]) == 0  # one curve spans no surface
@@ -290,7 +312,9 @@ def test_the_commands_leave_their_files(tmp_path, capsys):
         assert all(sha256((folder / name).read_bytes()).hexdigest() == file for name, file in report["files"].items())
         assert report["options"]["across"] == (6 if case == "tension" else 4)
         assert report["version"] and report["date"] and report["measured"]["name"] == "plain_flat"
-        assert {f"{case}{name}.png" for name in pictures} | {f"{case}.vtu", f"{case}.csv"} <= set(report["files"])
+        assert {f"{case}{name}.png" for name in pictures} | {f"{case}.pvd", f"{case}.csv"} <= set(report["files"])
+        vector = {f"{case}{name}.pdf" for name in pictures if "curve" in name or name == "_surface"}
+        assert vector <= set(report["files"])
         assert report["solver"]["finished"] and not report["solver"]["warnings"]
         assert 0 < report["contact"]["max_contact_penetration_mm"] < 0.002
         assert 0.5 < report["contact"]["min_contact_share"] <= 1
@@ -306,6 +330,20 @@ def test_the_commands_leave_their_files(tmp_path, capsys):
     last = {key: float(value) for key, value in rows[-1].items()}
     assert last["T11_N_per_mm"] == pytest.approx(2 * last["T11_N_per_yarn"] / (2 / 0.22))
     assert last["T11_N_per_yarn"] > float(rows[2]["T11_N_per_yarn"]) > 0
+    states = series(folder / "tension.pvd")
+    assert [state.field_data["state"][0] for _, state in states] == [
+        "E11 = 0 %, E22 = 0 %",
+        "E11 = 0 %, E22 = 0.4 %",
+        "E11 = 0.4 %, E22 = 0 %",
+        "k = 1, E11 = 0.4 %, E22 = 0.4 %",
+    ]
+    for number, ((time, state), row) in enumerate(zip(states, rows, strict=True)):
+        assert time == number and state.field_data["T11_N_per_yarn"][0] == pytest.approx(float(row["T11_N_per_yarn"]))
+    rest, pulled = states[0][1], states[-1][1]
+    assert pulled.points - pulled.point_data["displacement"] == pytest.approx(rest.points, abs=1e-12)
+    pulls = [2 * last["T11_N_per_yarn"], 2 * last["T22_N_per_yarn"]]
+    assert virial(pulled, 1.004 * 2 / 0.22) == pytest.approx(pulls, rel=0.02)
+    assert [time for time, _ in series(folder / "shear.pvd")] == [0, 2]
     assert report["valid_up_to_deg"] == 2 and not report["contact"]["states_beyond"]
 
 
@@ -314,6 +352,10 @@ def test_what_a_stopped_solver_reached_is_kept_aside(tmp_path, capsys):
     before = out / "plain_flat" / "tension.csv"
     before.parent.mkdir(parents=True)
     before.write_text("earlier\n")
+    (before.parent / "tension.json").write_text('{"files": ["tension.csv", "tension_state_9.vtu", "../tension"]}')
+    more = [before.parent / "tension_state_9.vtu", out / "tension"]
+    for file in more:
+        file.write_text("earlier\n")
     here = ["--families", str(families), "--out", str(out)]
     assert main(["tension", "plain_flat", *here, "--time-limit", "0.2"]) == 1
     said = capsys.readouterr().err
@@ -322,6 +364,9 @@ def test_what_a_stopped_solver_reached_is_kept_aside(tmp_path, capsys):
     assert {"tension.inp", "tension.log", "tension.json", "tension.csv"} <= {file.name for file in kept.iterdir()}
     assert before.read_text() == "earlier\n"
     assert not json.loads((kept / "tension.json").read_text())["solver"]["finished"]
+    assert all(file.exists() for file in more)
+    assert main(["tension", "plain_flat", *here, "--across", "4", "-q"]) == 0
+    assert not kept.exists() and [file.exists() for file in more] == [False, True]
 
 
 def test_a_unit_of_a_study_is_stretched(tmp_path):
@@ -333,7 +378,7 @@ def test_a_unit_of_a_study_is_stretched(tmp_path):
     assert figures["tension.k=1.T11_N_per_yarn"] == pytest.approx(figures["tension.k=1.T22_N_per_yarn"], rel=0.03)
     assert figures["consistency.max_penetration_mm"] < 1e-9 < figures["tension.max_penetration_mm"]
     assert figures["mesh.hexahedra"] == 2 * 2 * (4 * 2 * (8 + 2) + 8 * 2 * (4 + 2))
-    assert {"tension.csv", "tension.vtu", "report.json"} <= {
+    assert {"tension.csv", "tension.pvd", "report.json"} <= {
         file.name for file in (tmp_path / "kept/plain_flat").iterdir()
     }
 

@@ -128,11 +128,11 @@ def summary(report: Mapping) -> str:
 
 def _tension(states: list[Mapping]) -> list[str]:
     """The end of every curve."""
-    lines = [f"  {'k':>6}{'E11 %':>9}{'E22 %':>9}{'T11 N/yarn':>13}{'T22 N/yarn':>13}{'thickness %':>13}"]
+    lines = [f"  {'k':>6}{'E11 %':>9}{'E22 %':>9}{'T11 N per yarn':>16}{'T22 N per yarn':>16}{'thickness %':>13}"]
     for at in states:
         lines.append(
-            f"  {at['k']!s:>6}{100 * at['E11']:9.3g}{100 * at['E22']:9.3g}{at['T11_N_per_yarn']:13.5g}"
-            f"{at['T22_N_per_yarn']:13.5g}{at['thickness_change_percent']:+13.2f}"
+            f"  {at['k']!s:>6}{100 * at['E11']:9.3g}{100 * at['E22']:9.3g}{at['T11_N_per_yarn']:16.5g}"
+            f"{at['T22_N_per_yarn']:16.5g}{at['thickness_change_percent']:+13.2f}"
         )
     return lines
 

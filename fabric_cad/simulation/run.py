@@ -5,27 +5,29 @@ row -> solved fabric -> STEP -> coarse hexahedra -> deck -> ccx -> table, pictur
 
 from __future__ import annotations
 
+import json
 import math
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import SolverError
-from ..meshing.mesh import Mesh
 from ..pipeline import Stages
 from ..staging import staged
 from ..tables import Family
 from ..traces import renew_digests, trace, write_traced
 from .cell import loaded_cell
-from .job import Job, Reached, Solver, at_rest, condition, run_job, transverse_strains, write_model
+from .job import Job, Reached, Solver, at_rest, condition, run_job, write_model
 from .penetration import valid_until
+from .pictures import draw_crushing, draw_shear, draw_state, draw_tension, write_states
 from .report import Case, case_report, plain, write_rows
 from .settings import Settings, read_settings
 from .shear import angles, cell_vectors, shear_loads, shear_row
-from .tension import by_curve, paths, tension_loads, tension_row
+from .shear import state_label as shear_label
+from .tension import by_curve, paths, state_label, tension_loads, tension_row
 
 INCOMPLETE = "incomplete"
 
@@ -75,8 +77,12 @@ def _make(
     target, incomplete, finished = Path(out) / name, f"{kind}_{INCOMPLETE}", False
 
     def seal(folder: Path) -> None:
-        if finished and (folder / incomplete).exists():
-            shutil.rmtree(folder / incomplete)
+        """Drop what earlier runs left and this one does not replace: a stopped one's folder, more states."""
+        if finished:
+            if (folder / incomplete).exists():
+                shutil.rmtree(folder / incomplete)
+            for file in _files_of(target / f"{kind}.json") - {*report["files"], f"{kind}.json"}:
+                (folder / file).unlink(missing_ok=True)
         renew_digests(folder)
 
     with staged(target, seal) as folder:
@@ -92,6 +98,15 @@ def _make(
         reason = report["solver"]["reason"]
         raise SolverError(f"{name}: the solver {reason}; what it reached is in {target / incomplete}")
     return report
+
+
+def _files_of(report: Path) -> set[str]:
+    """Names of the files that the report of an earlier run lists, none where there is no such report."""
+    try:
+        names = json.loads(report.read_text(encoding="utf-8"))["files"]
+        return {name for name in names if Path(name).name == name and name.startswith(report.stem)}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return set()
 
 
 def run_case(
@@ -139,47 +154,47 @@ def _decks(case: Case, dialect: str) -> list[Path]:
 
 
 def _tension(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
-    """Table, report and pictures of a tension case."""
+    """Table, report, series and pictures of a tension case."""
     mesh, period, tension = case.cell.mesh, case.cell.fabric.period, case.settings.tension
     computed = zip(paths(tension, case.settings.contact), jobs)
     states = [(0.0, 0.0), *(state for path, job in computed for state in path[: len(job.reached)])]
     reached = [at_rest(mesh), *(each for job in jobs for each in job.reached)]
     vectors = [(1 + np.array(state))[:, None] * cell_vectors(period, 0.0) for state in states]
     conditions = _conditions(case, reached, vectors)
-    rows = by_curve([tension_row(mesh, period, *of) for of in zip(states, reached, conditions)], tension)
-    if drawn := _valid(case, zip(states[1:], reached[1:]), conditions[1:]):
-        with case.stages("pictures"):
-            _draw_tension(case, rows)
-            _draw_cell(case, max(drawn, key=lambda of: (min(of[0]), max(of[0])))[1])
+
+    rows, in_order = [], []
+    for number, ratio in by_curve(states, tension):
+        row = tension_row(mesh, period, states[number], reached[number], conditions[number])
+        rows.append(row | {"k": ratio})
+        in_order.append(reached[number])
+    labels = [state_label(row) for row in rows]
+    write_states(case, range(len(rows)), labels, in_order, rows)
+
+    loaded = [number for number in _valid(case, rows) if rows[number]["E11"] or rows[number]["E22"]]
+    if loaded:
+        draw_tension(case, rows)
+        largest = max(loaded, key=lambda number: sorted((rows[number]["E11"], rows[number]["E22"])))
+        draw_state(case, in_order[largest], labels[largest])
+        draw_crushing(case, in_order[largest], labels[largest])
     ends = {row["k"]: row for row in rows if not math.isnan(row["k"])}  # the last state of every curve
     return rows, {"largest": [plain(row) for row in ends.values()]}
 
 
-def _draw_tension(case: Case, rows: list[dict]) -> None:
-    from ..plots import plot_tension_curves, plot_tension_surface
-
-    columns = {name: [row[name] for row in rows] for name in rows[0]}
-    columns |= {name: columns[f"{name}_N_per_yarn"] for name in ("T11", "T22")}
-    plot_tension_curves(columns).savefig(case.path("_curves.png"), dpi=150)
-    if np.linalg.matrix_rank(np.array([columns["E11"], columns["E22"]]), tol=1e-9) == 2:  # rest is among them
-        plot_tension_surface(columns).savefig(case.path("_surface.png"), dpi=150)
-
-
 def _shear(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
-    """Table, report and pictures of a shear case."""
+    """Table, report, series and pictures of a shear case."""
     mesh, period, shear = case.cell.mesh, case.cell.fabric.period, case.settings.shear
     states, reached = list(angles(shear)[: len(jobs[0].reached)]), list(jobs[0].reached)
     if not shear.strain:
         states, reached = [0.0, *states], [at_rest(mesh), *reached]
     conditions = _conditions(case, reached, [cell_vectors(period, angle, shear.strain) for angle in states])
     rows = [shear_row(mesh, period, angle, shear.strain, *of) for angle, *of in zip(states, reached, conditions)]
-    if len(rows) > 1:
-        with case.stages("pictures"):
-            from ..plots import plot_shear_curve
+    labels = [shear_label(angle, shear.strain) for angle in states]
+    write_states(case, states, labels, reached, rows)
 
-            columns = {name: [row[name] for row in rows] for name in rows[0]}
-            plot_shear_curve(columns, allowed=case.penetration_bound).savefig(case.path("_curve.png"), dpi=150)
-            _draw_cell(case, _valid(case, reached, conditions)[-1])
+    if len(rows) > 1:
+        draw_shear(case, rows)
+        if valid := _valid(case, rows):
+            draw_state(case, reached[valid[-1]], labels[valid[-1]])
     depths = [row["penetration_mm"] for row in rows]
     return rows, {
         "valid_up_to_deg": valid_until(states, depths, case.penetration_bound) if states else 0.0,
@@ -188,7 +203,7 @@ def _shear(case: Case, jobs: list[Job]) -> tuple[list[dict], dict]:
 
 
 _WORK: dict[str, Callable[[Case, list[Job]], tuple[list[dict], dict]]] = {"tension": _tension, "shear": _shear}
-"""Table, report and pictures of each kind of case."""
+"""Table, report, series and pictures of each kind of case."""
 
 
 def _conditions(case: Case, reached: list[Reached], vectors: list[np.ndarray]) -> list[dict[str, float]]:
@@ -196,46 +211,6 @@ def _conditions(case: Case, reached: list[Reached], vectors: list[np.ndarray]) -
         return [condition(case.cell.mesh, case.settings.yarn, *of) for of in zip(reached, vectors)]
 
 
-def _valid(case: Case, states: Iterable, conditions: list[dict[str, float]]) -> list:
-    """The states whose yarns keep out of each other."""
-    return [state for state, at in zip(states, conditions) if at["penetration_mm"] <= case.penetration_bound]
-
-
-def _draw_cell(case: Case, state: Reached) -> None:
-    """The deformed cell of Fig. 22b-d and its ParaView file."""
-    from ..views import draw_deformed, write_deformed_vtu
-
-    mesh = case.cell.mesh
-    across, through = transverse_strains(mesh, state.strain)
-    fields = {"strain_across": across, "strain_through": through, "contact_pressure_MPa": state.pressure}
-    write_deformed_vtu(mesh, state.displacement, fields, {"fibre_axis": mesh.fibre_axes()}, case.path(".vtu"))
-    draw_deformed(
-        mesh,
-        state.displacement,
-        case.path("_normal.png"),
-        state.displacement[:, 2],
-        "displacement in z, mm",
-        hide=("weft_1",),
-    )
-    if case.kind == "tension":
-        draw_deformed(mesh, state.displacement, case.path("_crushing.png"), initial=True, scale=_magnified(mesh, state))
-    draw_deformed(mesh, state.displacement, case.path("_strain.png"), through, "strain through the yarn")
-    if not np.isnan(state.pressure).all():
-        draw_deformed(
-            mesh,
-            state.displacement,
-            case.path("_pressure.png"),
-            state.pressure,
-            "contact pressure, MPa",
-            hide=[name for name in mesh.yarns if name.startswith("warp")],
-        )
-
-
-def _magnified(mesh: Mesh, state: Reached) -> float:
-    """A round factor that makes the largest displacement a tenth of the cell, at least 1."""
-    largest = np.linalg.norm(state.displacement, axis=1).max()
-    wanted = 0.1 * np.ptp(mesh.points, axis=0).max() / largest
-    if wanted <= 1:
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return max(step * power for step in (1, 2, 5) if step * power <= wanted)
+def _valid(case: Case, rows: list[dict[str, float]]) -> list[int]:
+    """Numbers of the states whose yarns keep out of each other."""
+    return [number for number, row in enumerate(rows) if row["penetration_mm"] <= case.penetration_bound]

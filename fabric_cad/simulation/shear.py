@@ -64,3 +64,8 @@ def shear_row(
         "thickness_mm": float(np.ptp(mesh.points[:, 2] + reached.displacement[:, 2])),
         **condition,
     }
+
+
+def state_label(angle: float, strain: float) -> str:
+    """A line of ``shear.csv`` in words: its angle (degrees), and the strain before where there was one."""
+    return f"sheared by {angle:.4g} degrees" + (f", stretched by {100 * strain:.4g} % before" if strain else "")

@@ -7,6 +7,7 @@ extension of the cell along the wefts and along the warps, T11 and T22 the tensi
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,14 +93,23 @@ def tension_row(
     }
 
 
-def by_curve(rows: list[dict[str, float]], case: TensionCase) -> list[dict[str, float]]:
-    """Rows on no curve, then those of every curve with its k; a row on two curves comes twice."""
-    found: list[dict[str, float]] = []
-    used = set()
-    for curve in curves(case):
-        for state in curve.states:
-            at = next((at for at, row in enumerate(rows) if math.dist(state, (row["E11"], row["E22"])) <= _SAME), None)
-            if at is not None:
-                found.append(rows[at] | {"k": curve.ratio})
-                used.add(at)
-    return [row for at, row in enumerate(rows) if at not in used] + found
+def by_curve(states: Sequence[tuple[float, float]], case: TensionCase) -> list[tuple[int, float]]:
+    """The order of the table: numbers of states on no curve with k NaN, then those of every curve with its k.
+
+    A state on two curves comes twice.
+    """
+    on_curves = [
+        (number, curve.ratio)
+        for curve in curves(case)
+        for wanted in curve.states
+        if (number := next((n for n, state in enumerate(states) if math.dist(wanted, state) <= _SAME), None))
+        is not None
+    ]
+    used = {number for number, _ in on_curves}
+    return [(number, math.nan) for number in range(len(states)) if number not in used] + on_curves
+
+
+def state_label(row: Mapping[str, float]) -> str:
+    """A line of ``tension.csv`` in words: its k where it has one, E11 and E22."""
+    ratio = "" if math.isnan(row["k"]) else f"k = {row['k']:g}, "
+    return f"{ratio}E11 = {100 * row['E11']:.4g} %, E22 = {100 * row['E22']:.4g} %"

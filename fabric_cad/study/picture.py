@@ -5,25 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..plots import plot_sensitivity
+from ..plots import plot_sensitivity, save_figure
 
 _ACROSS = 3  # figures side by side
 
 
 def draw_sensitivities(name: str, design: str, rows: Sequence[dict], path: str | Path) -> None:
-    """Draw the rows of :func:`fabric_cad.study.sensitivity.sensitivities` as PNG, one axes a figure."""
+    """Draw the rows of :func:`fabric_cad.study.sensitivity.sensitivities`, one axes a figure, as PNG and PDF."""
     from matplotlib.figure import Figure
 
     figures = list(dict.fromkeys(row["figure"] for row in rows))
     across = min(_ACROSS, len(figures))
     down = -(-len(figures) // across)
     factors = len({row["factor"] for row in rows})
-    picture = Figure(figsize=(4.5 * across, (1.2 + 0.45 * factors) * down), layout="constrained", dpi=150)
+    picture = Figure(figsize=(4.5 * across, (1.2 + 0.45 * factors) * down), layout="constrained")
     axes = picture.subplots(down, across, squeeze=False).ravel()
     for ax, figure in zip(axes, figures):
         plot_sensitivity([row for row in rows if row["figure"] == figure], ax)
         ax.set_title(figure, fontsize="medium")
     for ax in axes[len(figures) :]:
         ax.remove()
-    picture.suptitle(f"{name}: {design}")
-    picture.savefig(path, metadata={"Software": None})
+    save_figure(picture, path, f"{name}: {design}")

@@ -1,0 +1,49 @@
+"""A cell as it is woven: a picture, and a window."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from ..errors import OutputError
+from ..meshing.mesh import Mesh
+from .scene import SIZE, add_yarns, finish, new_scene, offscreen, save
+
+_OF_THE_SCREEN = 0.8  # that a window takes at most: frames, bars and docks need room too
+
+
+def _scene_of(mesh: Mesh, title: str = "", **options):
+    plotter = new_scene(**options)
+    add_yarns(plotter, mesh, mesh.points, mesh.yarns)
+    finish(plotter, mesh.points, title)
+    return plotter
+
+
+def draw_cell(mesh: Mesh, path: str | Path, title: str = "") -> None:
+    """Draw a cell off-screen as PNG with a scale bar in mm, a title above; no display is needed."""
+    offscreen()
+    save(_scene_of(mesh, title, off_screen=True), path)
+
+
+def show_cell(mesh: Mesh, title: str) -> None:
+    """Show a cell in a window that fits the screen, until it is closed.
+
+    Raises :class:`OutputError` without a display.
+    """
+    if (
+        os.name == "posix"
+        and os.uname().sysname == "Linux"
+        and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    ):
+        raise OutputError("no display to open a window on (DISPLAY is not set); the picture is in the cell's folder")
+    plotter = _scene_of(mesh)
+    plotter.add_axes()
+    plotter.title = title
+    plotter.window_size = window_size(plotter.render_window.GetScreenSize())
+    plotter.show(title=title)
+
+
+def window_size(screen: tuple[int, int]) -> tuple[int, int]:
+    """Pixels of a window of the pictures' shape on a screen of so many pixels across and down."""
+    share = min(1.0, *(_OF_THE_SCREEN * there / wanted for there, wanted in zip(screen, SIZE)))
+    return tuple(int(share * wanted) for wanted in SIZE)

@@ -1,0 +1,65 @@
+"""Cuts through a deformed mesh, along a yarn's middle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..meshing.mesh import Mesh
+from ..weaves import DIRECTIONS, direction_of
+from .library import checked
+from .vtu import grid_of
+
+_BESIDE = 1e-6  # of the cell: how far the cut keeps from nodes that lie in its plane
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """Where a cut meets one ``yarn``: closed lines (points, 2) mm, along the cut and z, at rest and deformed."""
+
+    yarn: str
+    rest: np.ndarray
+    deformed: np.ndarray
+
+
+def cut_along(mesh: Mesh, displacement: np.ndarray, yarn: str) -> list[Outline]:
+    """Cut the cell at rest by the upright plane along a yarn's middle, and carry the cut's points along.
+
+    ``displacement`` (nodes, 3) mm. The plane's material points stay the same, so that a shape at rest
+    and its deformed one can be compared point by point. Raises ValueError where no yarn is called so.
+    """
+    checked("displacement", displacement, mesh.points.shape)
+    if yarn not in mesh.yarns:
+        raise ValueError(f"no yarn is called {yarn}")
+    along = DIRECTIONS.index(direction_of(yarn))
+    across = 1 - along
+
+    nodes = np.unique(mesh.hexahedra[mesh.yarn == mesh.yarns.index(yarn)])
+    middle = (mesh.points[nodes, across].min() + mesh.points[nodes, across].max()) / 2
+    middle += _BESIDE * np.ptp(mesh.points[:, across])
+
+    grid = grid_of(mesh)
+    grid.point_data["displacement"] = displacement
+    grid.cell_data["yarn_index"] = mesh.yarn
+    origin, normal = np.zeros(3), np.zeros(3)
+    origin[across], normal[across] = middle, 1.0
+    section = grid.slice(normal=normal, origin=origin)
+    plane = [along, 2]
+    return [
+        Outline(mesh.yarns[index], rest[:, plane], (rest + moved)[:, plane]) for index, rest, moved in _loops(section)
+    ]
+
+
+def _loops(section) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+    """The closed boundary lines of every yarn's part of a section: the yarn's number, points, displacements."""
+    for index in np.unique(section.cell_data["yarn_index"]):
+        part = section.extract_cells(np.flatnonzero(section.cell_data["yarn_index"] == index))
+        rim = part.extract_surface(algorithm=None).clean()
+        rim = rim.extract_feature_edges(
+            boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
+        )
+        lines = rim.strip(join=True, max_length=len(rim.points) + 1)
+        for line in lines.cell:
+            yield int(index), lines.points[line.point_ids], lines.point_data["displacement"][line.point_ids]
