@@ -7,7 +7,7 @@ import os
 import re
 import shutil
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from . import __version__, terminal
@@ -314,6 +314,7 @@ def _list(settings) -> int:
                 )
             )
     _print_table(lines)
+    _warn_of(solved)
     _raise(errors)
     return 0
 
@@ -334,8 +335,22 @@ def _solve(settings) -> int:
         for family, (_, table) in solved.items():
             say(f"{target / family}.csv: {len(table)} rows")
             _print_notes(table)
+    _warn_of(solved)
     _raise(errors)
     return 0
+
+
+def _warn_of(solved: dict) -> None:
+    """Warn of what is seldom true of a fabric, in all rows of solved tables."""
+    from .plausibility import implausible
+
+    for measured, table in solved.values():
+        _warn(map(str, implausible(measured, table.columns)))
+
+
+def _warn(sentences: Iterable[str]) -> None:
+    for sentence in sentences:
+        complain(f"warning: {sentence}")
 
 
 def _print_notes(table) -> None:
@@ -382,6 +397,7 @@ def _validate(settings) -> int:
         say("no row gives a standard deviation (columns *_std): none to propagate")
     for note in notes:
         say(f"note: {note}")
+    _warn_of(solved)
     _raise(errors)
     return 0
 
@@ -449,6 +465,7 @@ def _make_cell(settings, name: str) -> None:
     row = _row(settings, name)
     stages = Stages(_Progress(settings.quiet))
     report = make_cell(row, settings.out, _mesh_options(settings), settings.deck, stages)
+    _warn(report["warnings"])
     if settings.quiet:
         return
     say(summary(report))
@@ -503,6 +520,7 @@ def _simulate(settings, name: str, kind: str, make) -> None:
         return
     solver = Solver(find_solver(settings.ccx), settings.threads or cores(), settings.time_limit, progress.solver)
     report = make(row, settings.families, settings.out, solver, **options)
+    _warn(report["warnings"])
     if not settings.quiet:
         say(summary(report))
         for file in sorted([*report["files"], f"{kind}.json"]):

@@ -16,6 +16,7 @@ import numpy as np
 from .closing import ALONE, BOUNDED, CLOSING, ROUNDING, RULES, SYMBOLS, Closed
 from .errors import InputError, Problem, expect
 from .lengths import excess_length, slope_from_crimp
+from .plausibility import LARGEST_SLOPE, responsible, too_steep
 from .sections import free_parabola, lateral_arc, round_between, round_free_side
 from .solved import PLATEAUX, SolvedTable, point_columns
 from .tables import Family
@@ -261,6 +262,13 @@ def _refusals(table, measured, transitions, closed, least, used) -> dict[int, Pr
             lambda names, at: names[0],
             lambda at: "no yarn of the model has this crimp",
         )
+        for direction, A in zip(DIRECTIONS, (closed.A1, closed.A2)):
+            slope = A / transitions[direction].rise
+            refuse(
+                slope > LARGEST_SLOPE,
+                lambda names, at: responsible(direction, names),
+                lambda at: too_steep(direction, slope[at], responsible(direction, [CLOSING[k] for k in used[at]])),
+            )
         fabric = measured.closing[4]
         refuse(
             fabric < least * (1 - ROUNDING),

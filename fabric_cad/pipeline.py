@@ -130,6 +130,7 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
 
 def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> dict:
     """The report of what was made. Raises :class:`BuildError` where it shows a cell that is not consistent."""
+    from .plausibility import doubtful_report, implausible
     from .report import cell_report, check_report, yarn_data
 
     report = cell_report(
@@ -143,6 +144,7 @@ def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> dict:
         made.std,
     )
     check_report(report)
+    report["warnings"] = [*map(str, implausible(made.row, made.table.columns)), *doubtful_report(report)]
     return report
 
 

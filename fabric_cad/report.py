@@ -9,6 +9,7 @@ import numpy as np
 
 from .errors import BuildError
 from .meshing.mesh import Mesh
+from .plausibility import LEAST_JACOBIAN
 from .solved import Direction, SolvedFabric, point_columns
 from .tables import Family
 from .weaves import Weave
@@ -203,8 +204,9 @@ def _wrong_mesh(mesh: dict) -> list[str]:
     wrong = []
     if mesh["other_elements"]:
         wrong.append(f"{mesh['other_elements']} elements are no hexahedra")
-    if not mesh["min_scaled_jacobian"] > 0:
-        wrong.append(f"min_scaled_jacobian is {mesh['min_scaled_jacobian']:.3g}, not above 0")
+    if not mesh["min_scaled_jacobian"] > LEAST_JACOBIAN:
+        least = f"{mesh['min_scaled_jacobian']:.3g}, not above {LEAST_JACOBIAN:g}"
+        wrong.append(f"min_scaled_jacobian is {least}: the mesh has elements no solver takes")
     for nodes, paired in (("contact_nodes", "coincident_contact_nodes"), ("end_nodes", "matching_end_nodes")):
         if mesh[nodes] != mesh[paired]:
             wrong.append(f"only {mesh[paired]} of {mesh[nodes]} {nodes} are paired")

@@ -133,6 +133,7 @@ def _report():
             1,
         ),
         "seconds": {},
+        "warnings": [],
     }
 
 

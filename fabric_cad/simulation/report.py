@@ -50,6 +50,7 @@ def case_report(case: Case, name: str, jobs: list[Job], rows: list[dict], found:
         "settings": {key: settings[key] for key in ("yarn", "contact", case.kind)},
         "consistency": case.cell.report["consistency"],
         "mesh": case.cell.report["mesh"],
+        "warnings": case.cell.report["warnings"],
         "solver": {
             "version": jobs[0].run.version,
             "finished": jobs[-1].run.finished,

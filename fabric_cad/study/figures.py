@@ -8,6 +8,7 @@ import numpy as np
 
 from ..closing import CLOSING
 from ..identification import Identified
+from ..plausibility import implausible
 from ..report import yarn_data
 from ..solved import point_columns
 from ..tables import Family
@@ -37,7 +38,9 @@ def flat(report: Mapping) -> dict[str, object]:
     for key, value in report.items():
         if key in ("row", "family", "seconds", "options"):
             continue
-        if key == "measured_vs_model":
+        if key == "warnings":
+            row |= {key: "; ".join(value)} if value else {}
+        elif key == "measured_vs_model":
             for each in value:
                 row |= {f"{key}.{each['quantity']}.{k}": v for k, v in each.items() if k != "quantity"}
         elif key == "identified":
@@ -119,7 +122,16 @@ def identified_figures(table: Family, found: Identified) -> dict[str, Sequence]:
                 f"measured_vs_model.{name}.model": model,
                 f"measured_vs_model.{name}.difference_percent": 100 * (model - given) / given,
             }
-    return figures | _volumes(table, found, weaves, wefts, warps)
+    return figures | _volumes(table, found, weaves, wefts, warps) | _warnings(table, found)
+
+
+def _warnings(table: Family, found: Identified) -> dict[str, list[str | None]]:
+    """The warnings of every fabric as one text, where any has some."""
+    told: dict[str | None, list[str]] = {}
+    for problem in implausible(table.take(found.rows.tolist()), found.columns):
+        told.setdefault(problem.row, []).append(str(problem))
+    texts = ["; ".join(told[name]) if name in told else None for name in found.columns["name"]]
+    return {"warnings": texts} if told else {}
 
 
 def _volumes(table: Family, found: Identified, weaves, wefts, warps) -> dict[str, np.ndarray]:
