@@ -459,10 +459,16 @@ def _cell(settings) -> int:
 
 
 def _make_cell(settings, name: str) -> None:
+    from .identification import identify
+    from .meshing.count import hexahedra
+    from .meshing.options import mesh_options
     from .pipeline import Stages, make_cell
     from .report import summary
 
     row = _row(settings, name)
+    if not settings.quiet:
+        fabric = identify(row)[name]
+        complain(f"  {hexahedra(fabric, mesh_options(fabric, **_mesh_options(settings)))} hexahedra to make")
     stages = Stages(_Progress(settings.quiet))
     report = make_cell(row, settings.out, _mesh_options(settings), settings.deck, stages)
     _warn(report["warnings"])

@@ -18,6 +18,7 @@ import fabric_cad
 from fabric_cad import mesh_options
 from fabric_cad.cli import shipped_families
 from fabric_cad.edges import allowed_scaled_jacobian
+from fabric_cad.meshing.count import hexahedra
 from fabric_cad.pipeline import find_row, make_cell
 from fabric_cad.solved import read_solved
 from fabric_cad.staging import staged
@@ -84,6 +85,10 @@ def test_digests_follow_what_comes_to_the_folder_later(twill32):
     assert before | {"files": 0} == after | {"files": 0}
     (twill32.folder / "tension.csv").unlink()
     (twill32.folder / "report.json").write_text(json.dumps(before))
+
+
+def test_the_hexahedra_were_foretold(made):
+    assert hexahedra(made.fabric, mesh_options(made.fabric)) == made.report["mesh"]["hexahedra"]
 
 
 def test_yarns_touch_and_do_not_penetrate(made):

@@ -18,6 +18,7 @@ from ..errors import BuildError, expect
 from ..interrupts import uninterrupted
 from ..solved import SolvedFabric
 from ..weaves import yarns_of
+from .count import hexahedra
 from .mesh import Mesh
 from .options import MeshOptions
 from .plan import Plan, plan_yarn
@@ -63,8 +64,10 @@ def mesh_cell(step: str | Path, fabric: SolvedFabric, options: MeshOptions, msh:
             _mesh(gmsh, Path(step), fabric, options, Path(msh))
         except BuildError:
             raise
+        except MemoryError as error:
+            raise BuildError(f"out of memory while meshing {hexahedra(fabric, options)} hexahedra") from error
         except Exception as error:  # gmsh raises bare Exception
-            raise BuildError(f"gmsh: {error}") from error
+            raise BuildError(f"gmsh: {str(error) or 'no reason given'}") from error
 
 
 def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Path) -> None:

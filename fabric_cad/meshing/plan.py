@@ -10,6 +10,7 @@ from ..sections import Frame
 from ..solved import SolvedFabric
 from ..sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
 from ..weaves import Yarn
+from .count import chord_ends, column_counts, lateral_count
 from .options import MeshOptions
 from .templates import Template, flat_template, lenticular_template, round_template, worst_corner
 
@@ -77,10 +78,6 @@ def _shares(places: np.ndarray) -> np.ndarray:
     return (places - places[0]) / (places[-1] - places[0])
 
 
-_NEARLY = 0.1
-"""Two half chords that differ by less than this share of a column count as nearly equal."""
-
-
 def _columns(frame: Frame, side: str, across: int) -> list[np.ndarray]:
     """Places v (mm) of the nodes across a side: left of its contact chord, on it, right of it.
 
@@ -90,15 +87,10 @@ def _columns(frame: Frame, side: str, across: int) -> list[np.ndarray]:
     """
     edge, half = frame.width / 2, frame.splits[side][0]
     if frame.form == "round":
-        lateral = max(1, round(across * (edge - half) / (2 * half)))
-        outside = np.linspace(half, edge, lateral + 1)
+        outside = np.linspace(half, edge, lateral_count(frame, side, across) + 1)
         return [-outside[::-1], np.linspace(-half, half, across + 1), outside]
-    split = {each: frame.splits[each][0] for each in ("bottom", "top") if frame.has_laterals(each)}
-    typical = halves = sorted({*split.values(), edge})
-    if len(split) == 2 and np.ptp(list(split.values())) < _NEARLY * frame.width / across:
-        # no column for so small a difference: each side has its own chord's end in the same one
-        typical, halves = [np.mean(list(split.values())), edge], [half, edge]
-    counts = _allotted(np.diff([-typical[0], *typical]) * ([1] + [2] * (len(typical) - 1)), across)
+    typical, halves = chord_ends(frame, side, across)
+    counts = column_counts(typical, across)
     middle = np.linspace(-halves[0], halves[0], counts[0] + 1)
     outer = [np.linspace(a, b, n // 2 + 1)[1:] for a, b, n in zip(halves, halves[1:], counts[1:])]
     right = np.concatenate([[halves[0]], *outer])
@@ -108,12 +100,6 @@ def _columns(frame: Frame, side: str, across: int) -> list[np.ndarray]:
         return [places]
     first = int(np.abs(places + half).argmin())
     return [places[: first + 1], places[first : len(places) - first], places[len(places) - first - 1 :]]
-
-
-def _allotted(lengths: np.ndarray, across: int) -> list[int]:
-    """Numbers of elements on the middle interval and on the pairs beside it, ``across`` in all."""
-    pairs = [2 * max(1, round(across * length / lengths.sum() / 2)) for length in lengths[1:]]
-    return [max(1, across - sum(pairs)), *pairs]
 
 
 def _outline(
