@@ -314,7 +314,7 @@ def _list(settings) -> int:
                 )
             )
     _print_table(lines)
-    _warn_of(solved)
+    _warn_of(settings, solved)
     _raise(errors)
     return 0
 
@@ -335,22 +335,26 @@ def _solve(settings) -> int:
         for family, (_, table) in solved.items():
             say(f"{target / family}.csv: {len(table)} rows")
             _print_notes(table)
-    _warn_of(solved)
+    _warn_of(settings, solved)
     _raise(errors)
     return 0
 
 
-def _warn_of(solved: dict) -> None:
+def _warn_of(settings, solved: dict) -> None:
     """Warn of what is seldom true of a fabric, in all rows of solved tables."""
     from .plausibility import implausible
 
     for measured, table in solved.values():
-        _warn(map(str, implausible(measured, table.columns)))
+        _warn(settings, map(str, implausible(measured, table.columns)))
 
 
-def _warn(sentences: Iterable[str]) -> None:
+def _warn(settings, sentences: Iterable[str]) -> None:
+    """Print warnings to standard error, each once a command."""
+    told = vars(settings).setdefault("told", set())
     for sentence in sentences:
-        complain(f"warning: {sentence}")
+        if sentence not in told:
+            complain(f"warning: {sentence}")
+            told.add(sentence)
 
 
 def _print_notes(table) -> None:
@@ -397,7 +401,7 @@ def _validate(settings) -> int:
         say("no row gives a standard deviation (columns *_std): none to propagate")
     for note in notes:
         say(f"note: {note}")
-    _warn_of(solved)
+    _warn_of(settings, solved)
     _raise(errors)
     return 0
 
@@ -434,8 +438,10 @@ def _each_row(settings, work: Callable[[str], None]) -> int:
 
 
 def _row(settings, name: str):
-    """The table of one row; what is wrong with other rows and tables is told once."""
+    """The table of one row, warned of; what is wrong with other rows and tables is told once."""
+    from .identification import identify
     from .pipeline import find_row
+    from .plausibility import implausible
 
     row, others = find_row(settings.families, name)
     told = vars(settings).setdefault("told", set())
@@ -445,6 +451,7 @@ def _row(settings, name: str):
         if not (settings.quiet or getattr(settings, "all", False) or str(error) in told):
             complain(f"note, {place}: {error}")
             told.add(str(error))
+    _warn(settings, map(str, implausible(row, identify(row).columns)))
     return row
 
 
@@ -471,7 +478,7 @@ def _make_cell(settings, name: str) -> None:
         complain(f"  {hexahedra(fabric, mesh_options(fabric, **_mesh_options(settings)))} hexahedra to make")
     stages = Stages(_Progress(settings.quiet))
     report = make_cell(row, settings.out, _mesh_options(settings), settings.deck, stages)
-    _warn(report["warnings"])
+    _warn(settings, report["warnings"])
     if settings.quiet:
         return
     say(summary(report))
@@ -526,7 +533,7 @@ def _simulate(settings, name: str, kind: str, make) -> None:
         return
     solver = Solver(find_solver(settings.ccx), settings.threads or cores(), settings.time_limit, progress.solver)
     report = make(row, settings.families, settings.out, solver, **options)
-    _warn(report["warnings"])
+    _warn(settings, report["warnings"])
     if not settings.quiet:
         say(summary(report))
         for file in sorted([*report["files"], f"{kind}.json"]):
