@@ -12,21 +12,17 @@ A draft tells which shafts every warp thread hangs on and which shafts move at e
 
 from __future__ import annotations
 
-import configparser
 import csv
 import io
-import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from .errors import InputError, Problem, read_input
+from .drafts import MOST_THREADS, Draft, read_draft
+from .errors import InputError, Problem
 from .patterns import written
+from .setts import sett
 from .tables import MOST_YARNS, is_safe_name
 from .weaves import pattern_faults
-
-MOST_THREADS = 5000
-"""Most threads a draft may have in a direction, before it is reduced to its repeat."""
 
 _ROW = (
     "name",
@@ -36,7 +32,6 @@ _ROW = (
     *("fabric_thickness_mm", "section", "lateral_height_mm", "float_gap", "thicker"),
     *("weft_linear_density_tex", "warp_linear_density_tex", "fibre_density_g_cm3", "source", "notes"),
 )
-_TRUE, _FALSE = ("true", "yes", "on", "1"), ("false", "no", "off", "0")
 
 
 def read_wif(path: str | Path) -> tuple[str, ...]:
@@ -45,14 +40,34 @@ def read_wif(path: str | Path) -> tuple[str, ...]:
     Pick 1 is weft 1, warp thread 1 is warp 1. Only the smallest repeat in either direction
     is given; a repeat divides the draft or is there twice and more. A liftplan wins over a
     treadling; under a sinking shed the shafts named go down. Raises :class:`InputError`
-    with the section and key where the draft is incomplete, malformed or no weave.
+    with line, section and key where the draft is incomplete, malformed or no weave.
     """
-    draft = _Draft(str(path), _sections(Path(path)))
-    warps, wefts = draft.number("warp", "threads"), draft.number("weft", "threads")
-    threading = draft.lists("threading", warps)
-    moved = _moved(draft, wefts)
-    raised = "0" if draft.rising_shed() else "1"  # a warp raised has the weft under it
-    other = "1" if raised == "0" else "0"
+    return _pattern(read_draft(Path(path)))
+
+
+def wif_row(path: str | Path, name: str) -> str:
+    """Header and one row of ``pattern.csv`` for a draft.
+
+    Spacings are densities, and a thickness below its spacing is the yarn's; a larger one is how programs
+    draw threads that touch. What else was measured is left empty.
+    Raises :class:`InputError` for a name no table takes, and as :func:`read_wif` does.
+    """
+    if not is_safe_name(name):
+        raise InputError(f"name: {name!r} is no row name: letters, digits, '_' and '-' only, not '-' first")
+    text = io.StringIO()
+    rows = csv.DictWriter(text, _ROW, restval="", lineterminator="\n")
+    rows.writeheader()
+    draft = read_draft(Path(path))
+    rows.writerow({"name": name, "pattern": written(_pattern(draft))} | sett(draft))
+    return text.getvalue()
+
+
+def _pattern(draft: Draft) -> tuple[str, ...]:
+    rising = draft.flag("weaving", "rising shed") is not False
+    raised, other = ("0", "1") if rising else ("1", "0")  # a warp raised has the weft under it
+    threading, moved = _threading(draft, rising), _moved(draft, rising)
+    _check_moved(draft, threading, frozenset().union(*moved), rising)
+
     rows = ["".join(raised if shafts & moves else other for shafts in threading) for moves in moved]
     pattern = _repeat(rows)
     if max(len(pattern), len(pattern[0])) > MOST_YARNS:
@@ -63,116 +78,95 @@ def read_wif(path: str | Path) -> tuple[str, ...]:
     return pattern
 
 
-def wif_row(path: str | Path, name: str) -> str:
-    """Header and one row of ``pattern.csv`` for a draft; what was measured is left empty.
-
-    Raises :class:`InputError` for a name no table takes, and as :func:`read_wif` does.
-    """
-    if not is_safe_name(name):
-        raise InputError(f"name: {name!r} is no row name: letters, digits, '_' and '-' only, not '-' first")
-    text = io.StringIO()
-    rows = csv.DictWriter(text, _ROW, restval="", lineterminator="\n")
-    rows.writeheader()
-    rows.writerow({"name": name, "pattern": written(read_wif(path))})
-    return text.getvalue()
+def _threading(draft: Draft, rising: bool) -> list[frozenset[int]]:
+    """The shafts of every warp thread."""
+    _bounded(draft, "threading", "shaft")
+    shafts = _listed(draft, "threading", "warp", "this is no thread; the draft has {} of them")
+    idle = [number for number, each in enumerate(shafts, start=1) if not each]
+    if idle:
+        side = "under" if rising else "over"
+        why = f"hangs on no shaft: warp {idle[0]} passes {side} every yarn and never interlaces"
+        raise _idle(draft, "threading", "warp", idle, f"thread {idle[0]} of {len(shafts)} {why}", len(shafts))
+    return shafts
 
 
-@dataclass(frozen=True)
-class _Draft:
-    """The sections of a draft, section names and keys in lower case."""
-
-    path: str
-    sections: dict[str, dict[str, str | None]]
-
-    def wrong(self, message: str, section: str = "", key: str = "") -> InputError:
-        place = f"[{section.upper()}] {key.title()}".strip() if section else None
-        return InputError(Problem(message, self.path, column=place))
-
-    def section(self, section: str) -> dict[str, str | None]:
-        if not self.sections.get(section):
-            raise self.wrong("this section is missing or empty", section)
-        return self.sections[section]
-
-    def number(self, section: str, key: str) -> int:
-        """A number of threads."""
-        cells = self.section(section)
-        if key not in cells:
-            raise self.wrong("this key is missing", section, key)
-        (number, *more) = sorted(self.numbers(section, key)) or (0,)
-        if more or not 1 <= number <= MOST_THREADS:
-            raise self.wrong(f"{cells[key]} is not between 1 and {MOST_THREADS}", section, key)
-        return number
-
-    def numbers(self, section: str, key: str) -> frozenset[int]:
-        """The numbers of one key, comma-separated; 0 and nothing at all mean none."""
-        text = self.sections[section][key] or ""
-        if not re.fullmatch(r"(\d{1,9}(\s*,\s*\d{1,9})*)?", text):
-            raise self.wrong(f"{text!r} is not a list of whole numbers", section, key)
-        return frozenset(map(int, re.findall(r"\d+", text))) - {0}
-
-    def lists(self, section: str, count: int) -> list[frozenset[int]]:
-        """The numbers of every thread 1 ... count."""
-        cells = self.section(section)
-        for key in cells:
-            if not key.isdecimal() or not 1 <= int(key) <= count:
-                raise self.wrong(f"this is no thread; the draft has {count} of them", section, key)
-        missing = [number for number in range(1, count + 1) if str(number) not in cells]
-        if missing:
-            more = f", and {len(missing) - 1} more" if len(missing) > 1 else ""
-            raise self.wrong(f"thread {missing[0]} of {count} is missing{more}", section)
-        return [self.numbers(section, str(number)) for number in range(1, count + 1)]
-
-    def rising_shed(self) -> bool:
-        """True (also where the draft does not say) where the shafts named go up."""
-        text = self.sections.get("weaving", {}).get("rising shed")
-        if text is None:
-            return True
-        if text.lower() not in _TRUE + _FALSE:
-            raise self.wrong(f"{text!r} is neither true nor false", "weaving", "rising shed")
-        return text.lower() in _TRUE
-
-
-def _sections(path: Path) -> dict[str, dict[str, str | None]]:
-    """What stands in a draft's file, section by section."""
-    raw = read_input(path)
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")  # only titles and notes hold more than ASCII
-    parser = configparser.ConfigParser(
-        delimiters="=", comment_prefixes=";", allow_no_value=True, interpolation=None, default_section=""
-    )
-    try:
-        parser.read_string("\n".join(line.strip() for line in re.split(r"\r\n|\r|\n", text)))
-    except configparser.MissingSectionHeaderError as error:
-        message = "not a weaving draft: this line comes before any [SECTION]"
-        raise InputError(Problem(message, str(path), error.lineno)) from error
-    except configparser.DuplicateSectionError as error:
-        raise InputError(Problem("this section stands twice", str(path), error.lineno, f"[{error.section}]")) from error
-    except configparser.DuplicateOptionError as error:
-        place = f"[{error.section}] {error.option}"
-        raise InputError(Problem("this key stands twice", str(path), error.lineno, place)) from error
-    except configparser.ParsingError as error:
-        raise InputError(Problem("not a line of the form KEY=VALUE", str(path), error.errors[0][0])) from error
-    sections = {name.lower(): dict(parser[name]) for name in parser.sections()}
-    if "wif" not in sections:
-        raise InputError(Problem("not a weaving draft: it has no section [WIF]", str(path)))
-    return sections
-
-
-def _moved(draft: _Draft, wefts: int) -> list[frozenset[int]]:
+def _moved(draft: Draft, rising: bool) -> list[frozenset[int]]:
     """The shafts that move at every pick."""
-    if draft.sections.get("liftplan"):
-        return draft.lists("liftplan", wefts)
-    if not draft.sections.get("treadling"):
-        raise draft.wrong("this section is missing or empty, and there is no [LIFTPLAN]", "treadling")
-    picks = draft.lists("treadling", wefts)
-    ties = {key: draft.numbers("tieup", key) for key in draft.section("tieup")}
+    if any(draft.numbered("liftplan").values()):
+        section = "liftplan"
+        _bounded(draft, section, "shaft")
+        moved = _listed(draft, section, "weft", "this is no pick; the draft has {} of them")
+    else:
+        section = "treadling"
+        if not draft.sections.get(section):
+            raise draft.wrong("this section is missing or empty, and there is no [LIFTPLAN]", section)
+        moved = _treadled(draft)
+    idle = [number for number, each in enumerate(moved, start=1) if not each]
+    if idle:
+        side = "over" if rising else "under"
+        why = f"moves no shaft: weft {idle[0]} passes {side} every yarn and never interlaces"
+        raise _idle(draft, section, "weft", idle, f"pick {idle[0]} of {len(moved)} {why}", len(moved))
+    return moved
+
+
+def _treadled(draft: Draft) -> list[frozenset[int]]:
+    """The shafts tied to the treadles of every pick."""
+    if not draft.sections.get("tieup"):
+        raise draft.wrong("this section is missing or empty", "tieup")
+    _bounded(draft, "treadling", "treadle")
+    _bounded(draft, "tieup", "shaft")
+    ties = draft.numbered("tieup")
+    picks = _listed(draft, "treadling", "weft", "this is no pick; the draft has {} of them")
     for number, treadles in enumerate(picks, start=1):
-        for treadle in sorted(treadles):
-            if str(treadle) not in ties:
-                raise draft.wrong(f"treadle {treadle} is not in [TIEUP]", "treadling", str(number))
-    return [frozenset().union(*(ties[str(treadle)] for treadle in treadles)) for treadles in picks]
+        for treadle in sorted(treadles - ties.keys()):
+            raise draft.wrong(f"treadle {treadle} is not in [TIEUP]", "treadling", draft.key("treadling", number))
+    return [frozenset().union(*(ties[treadle] for treadle in treadles)) for treadles in picks]
+
+
+def _bounded(draft: Draft, section: str, kind: str) -> None:
+    """Refuse numbers of shafts, or of treadles, beyond those [WEAVING] says the loom has (where it does)."""
+    key = f"{kind}s"
+    there_are = draft.count("weaving", key, MOST_THREADS)
+    for number, listed in draft.numbered(section).items():
+        if there_are and listed and max(listed) > there_are:
+            message = f"{kind} {max(listed)} is beyond the {there_are} of [WEAVING] {key.title()}"
+            raise draft.wrong(message, section, draft.key(section, number))
+
+
+def _listed(draft: Draft, section: str, direction: str, beyond: str) -> list[frozenset[int]]:
+    """What a section lists for every thread of a direction, nothing where it does not name one.
+
+    Where the draft does not say how many there are, the last that has something is the last.
+    """
+    listed = draft.numbered(section)
+    last = max((number for number, each in listed.items() if each), default=0)
+    if not last:
+        raise draft.wrong("this section is missing or empty", section)
+    threads = draft.count(direction, "threads", MOST_THREADS) or last
+    if last > threads:
+        raise draft.wrong(beyond.format(threads), section, draft.key(section, last))
+    if last > MOST_THREADS:
+        raise draft.wrong(f"{last} is not between 1 and {MOST_THREADS}", section, draft.key(section, last))
+    return [listed.get(number, frozenset()) for number in range(1, threads + 1)]
+
+
+def _idle(draft: Draft, section: str, direction: str, idle: list[int], message: str, threads: int) -> InputError:
+    """An error at the first thread that does nothing; where only the last ones do, the remedy."""
+    if len(idle) > 1:
+        message += f", nor do {len(idle) - 1} more"
+    if idle == list(range(idle[0], threads + 1)):
+        message += f"; write [{direction.upper()}] Threads={idle[0] - 1} if the draft ends there"
+    return draft.wrong(message, section, draft.key(section, idle[0]))
+
+
+def _check_moved(draft: Draft, threading: list[frozenset[int]], moved: frozenset[int], rising: bool) -> None:
+    """Refuse threads on shafts only that no pick moves."""
+    for number, shafts in enumerate(threading, start=1):
+        if not shafts & moved:
+            named = ", ".join(map(str, sorted(shafts)))
+            side = "under" if rising else "over"
+            message = f"no pick moves shaft {named}: warp {number} passes {side} every yarn and never interlaces"
+            raise draft.wrong(message, "threading", draft.key("threading", number))
 
 
 def _repeat(rows: Sequence[str]) -> tuple[str, ...]:
