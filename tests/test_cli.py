@@ -168,7 +168,7 @@ def test_a_missing_system_library_is_named(here, monkeypatch, capsys):
         raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
 
     monkeypatch.setattr("fabric_cad.pipeline.make_cell", load)
-    assert main(["cell", "plain"]) == 1
+    assert main(["cell", "plain", "-q"]) == 1
     assert capsys.readouterr().err.startswith("the system lacks the library libGL.so.1; the README lists")
 
 
