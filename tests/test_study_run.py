@@ -150,9 +150,10 @@ def test_a_constant_figure_is_said_to_be_one_and_has_no_row(here, capsys):
 def test_no_sensitivities_of_an_earlier_study_stay(here):
     text = "base = 'plain'\ndesign = 'one-at-a-time'\nfigures = ['{}']\nfactors = {{ weft_crimp = [0.003] }}\n"
     run_study(study(text.format("identified.weft.crimp")))
-    assert Path("build/study/sensitivity.csv").exists()
+    names = {f"sensitivity.{kind}" for kind in ("csv", "png", "pdf")}
+    assert {path.name for path in Path("build/study").glob("sensitivity*")} == names
     run_study(study(text.format("identified.weft.spacing_mm")))
-    assert not Path("build/study/sensitivity.csv").exists() and not Path("build/study/sensitivity.png").exists()
+    assert not list(Path("build/study").glob("sensitivity*"))
 
 
 def test_the_answer_is_printed_the_factor_that_matters_most_first(here, capsys):

@@ -7,7 +7,7 @@ from pathlib import Path
 from ..errors import OutputError
 from .table import NAMES
 
-FILES = (*NAMES, "sensitivity.csv", "sensitivity.png", "costs.csv")
+FILES = (*NAMES, "sensitivity.csv", "sensitivity.png", "sensitivity.pdf", "costs.csv")
 """Files that a study leaves."""
 
 

@@ -74,7 +74,7 @@ def run_study(
     """Run a study into the folder ``out/<study>``; units that an earlier run has finished are not run again.
 
     Leaves ``table.parquet`` and ``table.csv`` (one row a unit: factors, status, reason, figures),
-    ``sensitivity.csv`` and ``sensitivity.png`` where something varies, ``costs.csv`` (times and memory of
+    ``sensitivity.csv``, ``.png`` and ``.pdf`` where something varies, ``costs.csv`` (times and memory of
     every unit, not at depth identify) and, where the study keeps them, the units' files in ``cells``.
     Units that failed in an earlier run are tried again. Raises :class:`FabricCadError`; what is finished stays.
     """
@@ -240,7 +240,7 @@ def _write(study: Study, folder: Path, samples: Samples, status, reasons, figure
             rows = [dict(zip(costs, values)) for values in zip(*costs.values())]
             _write_csv(aside / "costs.csv", [{"unit": at, **row} for at, row in enumerate(rows)])
     if not found:  # there may be those of what the study was before
-        for name in ("sensitivity.csv", "sensitivity.png"):
+        for name in ("sensitivity.csv", "sensitivity.png", "sensitivity.pdf"):
             (folder / name).unlink(missing_ok=True)
 
 
