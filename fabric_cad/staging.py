@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from . import folders
-from .errors import FabricCadError, OutputError
+from .errors import BuildError, FabricCadError, OutputError
 from .interrupts import uninterrupted
 from .working import NEW, OLD, clear_leftovers, working_folder
 
@@ -131,6 +131,9 @@ def output_errors(target: Path) -> Iterator[None]:
     except (FabricCadError, OSError) as error:
         if _is_full(target, error):
             raise OutputError(f"{target}: no space left on the device") from error
+        if isinstance(error, BuildError) and (free := _free(target)) < _LITTLE:
+            # a library that fails to write may take away what it wrote, and leaves room again
+            raise OutputError(f"{error}; the device of {target} has only {free / 1e6:.2g} MB left") from error
         if isinstance(error, FabricCadError):
             raise
         raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error
@@ -140,5 +143,14 @@ def _is_full(target: Path, error: Exception) -> bool:
     """True where an error is one of a full device; libraries do not say so themselves."""
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
         return True
+    return _free(target) < 1 << 16
+
+
+def _free(target: Path) -> int:
+    """Bytes free on the device of a folder, which need not be there yet."""
     existing = next(folder for folder in (target, *target.absolute().parents) if folder.is_dir())
-    return shutil.disk_usage(existing).free < 1 << 16
+    return shutil.disk_usage(existing).free
+
+
+_LITTLE = 1 << 25
+"""Bytes free below which a stage that fails is told with what is left: files of a cell take that much."""

@@ -1,6 +1,7 @@
 """The command where its output is closed or full, its folder gone, or a name cannot be printed; quiet; many rows."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ from test_cli import HEADER, _report
 
 from fabric_cad import staging
 from fabric_cad.cli import main
-from fabric_cad.errors import BuildError
+from fabric_cad.errors import BuildError, InputError, OutputError
 
 FABRIC_CAD = f"'{sys.executable}' -m fabric_cad"
 posix = pytest.mark.skipif(os.name != "posix", reason="a POSIX shell's redirections")
@@ -154,6 +155,18 @@ def test_a_folder_of_another_user_is_told(here, monkeypatch, capsys, place):
     assert main(["solve", "--out", "results"]) == 1
     told = capsys.readouterr().err
     assert "Permission denied" in told and ("families" in told or "results" in told) and told.count("\n") == 1
+
+
+def test_a_stage_that_fails_on_a_nearly_full_device_says_what_is_left(tmp_path, monkeypatch):
+    free = 100_000
+    monkeypatch.setattr(staging.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(1, 1, free))
+    with pytest.raises(OutputError, match=r"OCCT wrote no STEP file; the device of .* has only 0.1 MB left"):
+        with staging.output_errors(tmp_path):
+            raise BuildError("OCCT wrote no STEP file")
+    for error in (InputError("a row"), BuildError("x")):
+        free = 10**9 if isinstance(error, BuildError) else free
+        with pytest.raises(type(error), match="^(a row|x)$"), staging.output_errors(tmp_path):
+            raise error
 
 
 def test_memory_that_runs_out_is_told_as_such(here, monkeypatch, capsys):
