@@ -143,6 +143,57 @@ def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 
     )
 
 
+def plot_edges(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 1) -> None:
+    """Heights of a yarn's two edges along it, over its midline; a flat side's lower corner stands for it.
+
+    The gaps between two crossings of one float are grey: there ``float_gap`` decides how the edges run.
+    """
+    yarn = _yarn(fabric, direction, number)
+    planes = control_planes(fabric, yarn)
+    path, sections = trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes)
+
+    heights: dict[str, list[np.ndarray]] = {"midline": [], "left edge": [], "right edge": []}
+    along = []
+    for piece, first, second in zip(path.pieces, sections, sections[1:]):
+        x, z = sample(piece)
+        share = (x - x[0]) / (x[-1] - x[0])
+        blend = share**2 * (3 - 2 * share)
+        along.append(x)
+        heights["midline"].append(z)
+        for name, end in (("left", 0), ("right", -1)):
+            start, stop = (_edge_height(section, name, end) for section in (first, second))
+            heights[f"{name} edge"].append(z + (1 - blend) * start + blend * stop)
+
+    styles = {
+        "midline": ("black", ":"),
+        "left edge": (COLOURS[direction], "-"),
+        "right edge": (COLOURS[direction], "--"),
+    }
+    for label, (colour, style) in styles.items():
+        axes.plot(np.concatenate(along), np.concatenate(heights[label]), style, color=colour, label=label)
+    _shade_float_gaps(fabric, axes, yarn)
+    axes.set(
+        xlabel="x mm" if direction == "weft" else "y mm",
+        ylabel="z mm",
+        title=f"edges of {direction} {number}, float gaps {fabric.float_gap}",
+    )
+
+
+def _edge_height(section: Section, name: str, end: int) -> float:
+    """Height of a section's left or right edge above the midline, mm."""
+    return float(section.strips.get(f"{name}_lower", section.strips["bottom"]).poles[end, 1])
+
+
+def _shade_float_gaps(fabric: SolvedFabric, axes, yarn: Yarn) -> None:
+    spacing = fabric.directions[yarn.direction].crossed_spacing
+    half = (spacing - fabric.crossed(yarn.direction).width) / 2
+    period = len(yarn.high) * spacing
+    for number, same in enumerate((*yarn.floats_on, yarn.floats_on[0])):
+        if same:
+            middle = number * spacing
+            axes.axvspan(max(0.0, middle - half), min(period, middle + half), color="0.85", linewidth=0)
+
+
 def _on_axis(section: Section, side: str) -> float:
     """Height of a section's bottom or top above its yarn's axis."""
     v, z = section_outline(Section({side: section.strips[side]}), 201)

@@ -16,12 +16,14 @@ from fabrics import (
     table,
 )
 from hypothesis import given, settings
+from matplotlib.figure import Figure
 from scipy.interpolate import BSpline
 from test_sweeps import fabric_of, patch_of, points, seeds
 
 from fabric_cad.errors import InputError
 from fabric_cad.identification import identify, identify_rows
 from fabric_cad.pipeline import make_cell
+from fabric_cad.plots import plot_edges
 from fabric_cad.solved import read_solved
 from fabric_cad.sweeps import control_planes, control_sections, trajectory
 from fabric_cad.tables import FLOAT_GAPS
@@ -203,3 +205,22 @@ def test_the_column_is_read_and_told(tmp_path):
     without = [",".join(cell for k, cell in enumerate(line.split(",")) if k != 8) for line in text.splitlines()]
     (tmp_path / "before.csv").write_text("\n".join(without))
     assert read_solved(tmp_path / "before.csv").float_gap == "symmetric"
+
+
+def test_the_picture_of_the_edges():
+    spans = []
+    for gap in FLOAT_GAPS:
+        fabric = identify(flat_twill(over=1, under=4, float_gap=gap))["twill32"]
+        axes = Figure().subplots()
+        plot_edges(fabric, axes, "weft", 1)
+        x, midline, left, right = (axes.lines[0].get_xdata(), *(line.get_ydata() for line in axes.lines))
+        assert [line.get_label() for line in axes.lines] == ["midline", "left edge", "right edge"]
+        grey = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in axes.patches]
+        spacing, half = fabric.weft.crossed_spacing, (fabric.weft.crossed_spacing - fabric.warp.width) / 2
+        middles = np.array([2, 3, 4]) * spacing  # weft 1 passes over warp 1, and under the others
+        assert np.array(grey) == pytest.approx(np.column_stack([middles - half, middles + half]))
+        inside = np.any([(x >= low) & (x <= high) for low, high in grey], axis=0)
+        spans.append(np.maximum(left - midline, right - midline)[inside])
+    thickness = fabric.weft.thickness
+    assert spans[0].min() == pytest.approx(0, abs=1e-3 * thickness)  # mid-height, in the middle of a gap
+    assert spans[1] == pytest.approx(thickness / 2)  # one edge or the other stays on the float's side
