@@ -253,11 +253,16 @@ class _Progress:
             complain(f"{start}  {name:14}{seconds:6.2f} s")
 
     def solver(self, at) -> None:
-        """An increment of a solver job, as :class:`fabric_cad.simulation.solver.Progress`."""
-        if not self.quiet:
-            start, end = ("\r\033[K", "") if self.terminal else ("", "\n")
-            text = f"  state {at.step} of {at.steps}, increment {at.increment}: {100 * at.load:.0f} % of its load"
-            complain(f"{start}{text}", end=end)
+        """A case before its first state, or an increment, as :class:`fabric_cad.simulation.progress.CaseProgress`."""
+        from .simulation.progress import announced, told
+
+        if self.quiet:
+            return
+        start, end = ("\r\033[K", "") if self.terminal else ("", "\n")
+        if at.state:
+            complain(f"{start}  {told(at)}", end=end)
+        else:
+            complain(f"{start}  {announced(at)}")
 
 
 def _tables(settings, partial: bool = False) -> tuple[dict, list[InputError]]:

@@ -19,6 +19,7 @@ from ..meshing.mesh import Mesh
 from ..weaves import DIRECTIONS, direction_of
 from .energy import cell_energy
 from .penetration import penetration
+from .progress import CaseProgress
 from .results import State, read_dat, read_frd
 from .settings import Settings, YarnLaw
 from .solver import Progress, Run, find_solver, run_solver
@@ -28,7 +29,7 @@ _STRESS_FREE = 1e-6  # MPa: contact pressure above which a node counts as touchi
 
 @dataclass(frozen=True)
 class Solver:
-    """Which ccx to run, on how many threads, for how many seconds a job, and who hears of its progress.
+    """Which ccx to run, on how many threads, for how many seconds a job, and who hears of a case's progress.
 
     By default the one on the PATH, on all processors. Raises :class:`SolverError` where there is none.
     """
@@ -36,7 +37,7 @@ class Solver:
     path: Path = field(default_factory=find_solver)
     threads: int = field(default_factory=cores)
     time_limit: float = 3600.0
-    listen: Callable[[Progress], None] | None = None
+    listen: Callable[[CaseProgress], None] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,12 +92,13 @@ def write_model(
     write_keywords(model_keywords(mesh, period, constants, law.hardening, touch, loads, title), path, dialect)
 
 
-def run_job(deck: Path, mesh: Mesh, solver: Solver) -> Job:
+def run_job(deck: Path, mesh: Mesh, solver: Solver, listen: Callable[[Progress], None] | None = None) -> Job:
     """Run a deck of :func:`write_model` and read what it reached; of a job that stops early, what came before.
 
+    ``listen`` hears of its increments.
     Raises :class:`SolverError` where the solver cannot be started.
     """
-    run = run_solver(deck, solver.path, threads=solver.threads, time_limit=solver.time_limit, listen=solver.listen)
+    run = run_solver(deck, solver.path, threads=solver.threads, time_limit=solver.time_limit, listen=listen)
     for useless in (deck.with_suffix(".12d"), deck.with_name("spooles.out")):
         useless.unlink(missing_ok=True)
     if not run.increments:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..decks.model import Load
 from ..errors import SolverError
 from ..pipeline import Stages
 from ..staging import staged
@@ -23,6 +24,7 @@ from .cell import loaded_cell
 from .job import Job, Reached, Solver, at_rest, condition, run_job, write_model
 from .penetration import valid_until
 from .pictures import draw_crushing, draw_shear, draw_state, draw_tension, write_states
+from .progress import CaseWatch
 from .report import Case, case_report, plain, write_rows
 from .settings import Settings, read_settings
 from .shear import angles, cell_vectors, shear_loads, shear_row
@@ -118,9 +120,12 @@ def run_case(
     """
     case = _prepared(kind, row, settings, folder, mesh, stages)
     jobs: list[Job] = []
-    for deck in _decks(case, "calculix"):
+    decks = _decks(case, "calculix")
+    states = [len(loads) for loads in _loads(case)]
+    watch = CaseWatch(states, len(case.cell.mesh.hexahedra), solver.listen)
+    for number, deck in enumerate(decks):
         with stages(f"solve {deck.stem}"):
-            jobs.append(run_job(deck, case.cell.mesh, solver))
+            jobs.append(run_job(deck, case.cell.mesh, solver, watch.job(number)))
         if not jobs[-1].run.finished:
             break
     rows, found = _WORK[kind](case, jobs)
@@ -136,14 +141,18 @@ def _prepared(kind: str, row: Family, settings: Settings, folder: Path, mesh: Ma
         return Case(kind, loaded_cell(row, settings, mesh, Path(scratch), stages), settings, folder, stages)
 
 
+def _loads(case: Case) -> list[tuple[Load, ...]]:
+    """The states that every job of a case goes through."""
+    settings, period = case.settings, case.cell.fabric.period
+    if case.kind == "tension":
+        return [tension_loads(period, path) for path in paths(settings.tension, settings.contact)]
+    return [shear_loads(period, settings.shear)]
+
+
 def _decks(case: Case, dialect: str) -> list[Path]:
     """Write the case's decks; their places."""
     cell, settings, period = case.cell, case.settings, case.cell.fabric.period
-    if case.kind == "tension":
-        runs = [tension_loads(period, path) for path in paths(settings.tension, settings.contact)]
-    else:
-        runs = [shear_loads(period, settings.shear)]
-    decks = []
+    runs, decks = _loads(case), []
     with case.stages("write deck"):
         for at, loads in enumerate(runs, 1):
             deck = case.path(f"_{at}.inp" if len(runs) > 1 else ".inp")

@@ -52,7 +52,7 @@ def _cells(design: str, row: Mapping) -> tuple[str, str, str]:
     if design == "sobol":
         return factor, _interval(row, "total"), _interval(row, "first_order")
     if design != "one-at-a-time":
-        return factor, f"{row['spearman']:+.2f}", f"{row['p_value']:.1g}"
+        return factor, f"{row['spearman']:+.2f}", f"{row['p_value']:.1g}" if row["p_value"] else "below 1e-300"
     if _known(row.get("figure_value")):  # a factor of texts has a row a value
         return f"{factor} = {row['value']}", "", f"figure {row['figure_value']:.5g}"
 
@@ -74,8 +74,8 @@ def reasons_lines(reasons: Iterable[tuple[str, str]]) -> list[str]:
     counted = sorted(kinds.items(), key=lambda kind: -len(kind[1]))
     lines = []
     for (status, _), same in counted[:_MOST]:
-        example = f"such as: {same[0]}" if len(set(same)) > 1 else same[0]
-        lines.append(f"  {len(same)} {status}: {example}")
+        such_as = ", such as" if len(set(same)) > 1 else ""
+        lines.append(f"  {len(same)} {status}{such_as}: {same[0]}")
     if len(counted) > _MOST:
         left = sum(len(same) for _, same in counted[_MOST:])
         lines.append(f"  {left} for {len(counted) - _MOST} other reasons, see table.csv")
