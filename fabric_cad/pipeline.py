@@ -21,10 +21,9 @@ from .table_files import stray_tables
 from .tables import Family, expect_row, read_families
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from .cad import Consistency
     from .meshing import Mesh, MeshOptions
+    from .meshing.quality import Quality
 
 
 @dataclass
@@ -85,10 +84,10 @@ class Made:
 
 @dataclass(frozen=True, eq=False)
 class Meshed:
-    """The mesh of a cell as read from its file, its scaled Jacobians (elements,) and what the yarns' edges allow."""
+    """The mesh of a cell as read from its file, its quality, and the scaled Jacobian that the yarns' edges allow."""
 
     mesh: Mesh
-    quality: np.ndarray
+    quality: Quality
     allowed: float
 
 
@@ -123,9 +122,9 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
         mesh = read_mesh(msh)
     with stages("quality"):
         from .edges import allowed_scaled_jacobian
-        from .views import scaled_jacobians
+        from .meshing.quality import mesh_quality
 
-        return Meshed(mesh, scaled_jacobians(mesh), allowed_scaled_jacobian(made.fabric))
+        return Meshed(mesh, mesh_quality(mesh), allowed_scaled_jacobian(made.fabric))
 
 
 def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> dict:

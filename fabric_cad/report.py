@@ -136,9 +136,13 @@ def _mesh(fabric: SolvedFabric, meshed) -> dict:
         "nodes": len(mesh.points),
         "hexahedra": len(mesh.hexahedra),
         "other_elements": mesh.other_elements,
-        "min_scaled_jacobian": float(quality.min()),
-        "median_scaled_jacobian": float(np.median(quality)),
+        "min_scaled_jacobian": float(quality.scaled_jacobian.min()),
+        "median_scaled_jacobian": float(np.median(quality.scaled_jacobian)),
         "scaled_jacobian_edges_allow": meshed.allowed,
+        "min_opposite_edge_ratio": float(quality.opposite_edge_ratio.min()),
+        "min_corner_angle_deg": float(quality.least_angle.min()),
+        "max_corner_angle_deg": float(quality.greatest_angle.max()),
+        "max_aspect": float(quality.aspect.max()),
         "contact_nodes": contact.nodes,
         "coincident_contact_nodes": contact.paired,
         "end_nodes": ends.nodes,
@@ -261,6 +265,9 @@ def summary(report: dict) -> str:
         f"{mesh['coincident_contact_nodes']} of {mesh['contact_nodes']} contact nodes coincide",
         f"  scaled Jacobian       min {mesh['min_scaled_jacobian']:.3f}, median {mesh['median_scaled_jacobian']:.3f}; "
         f"the yarns' edges allow {mesh['scaled_jacobian_edges_allow']:.3f}",
+        f"  element shape         edges at least {mesh['min_opposite_edge_ratio']:.2g} of the opposite ones, corners "
+        f"{mesh['min_corner_angle_deg']:.0f} to {mesh['max_corner_angle_deg']:.0f} deg, "
+        f"aspect to {mesh['max_aspect']:.3g}",
         f"  seconds               {sum(report['seconds'].values()):.1f}",
     ]
     return "\n".join(lines)

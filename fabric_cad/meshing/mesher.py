@@ -21,7 +21,7 @@ from ..weaves import yarns_of
 from .count import hexahedra
 from .mesh import Mesh
 from .options import MeshOptions
-from .plan import Plan, plan_yarn
+from .plan import Plan, plan_yarns
 
 _HEXAHEDRON, _QUADRILATERAL = 5, 3  # gmsh's element types
 _PLACE = 1e-6  # mm, by which a face's nodes are told apart
@@ -74,7 +74,7 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
     gmsh.option.setNumber("Geometry.OCCBoundsUseStl", 0)
     gmsh.merge(str(step))
     solids = {gmsh.model.getEntityName(3, tag).split("/")[-1]: tag for _, tag in gmsh.model.getEntities(3)}
-    plans = [plan_yarn(fabric, yarn, options) for yarn in yarns_of(fabric.weave.interlacement())]
+    plans = plan_yarns(fabric, yarns_of(fabric.weave.interlacement()), options)
     if missing := [plan.yarn.name for plan in plans if plan.yarn.name not in solids]:
         raise BuildError(f"{step}: holds no solid named {', '.join(missing)}")
     faces = {plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name]) for plan in plans}
@@ -172,6 +172,8 @@ def _fill(gmsh, plan: Plan, solid: int, faces: dict) -> None:
     tags, places = _outline(gmsh, plan, faces)
     template = plan.template
     inner = np.einsum("io,roc->ric", template.weights, places)
+    if plan.moved is not None:
+        inner[..., [1 - plan.along_axis, 2]] += plan.moved
     first = int(gmsh.model.mesh.getMaxNodeTag()) + 1
     inner_tags = np.arange(first, first + inner.shape[0] * inner.shape[1]).reshape(inner.shape[:2])
     quads = template.quads if plan.yarn.direction == "weft" else template.quads[:, ::-1]

@@ -2,38 +2,44 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..sections import Frame
+from ..sections import Frame, Section
 from ..solved import SolvedFabric
 from ..sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
-from ..weaves import Yarn
+from ..weaves import DIRECTIONS, Yarn
 from .count import chord_ends, column_counts, lateral_count
 from .options import MeshOptions
-from .templates import Template, flat_template, lenticular_template, round_template, worst_corner
+from .rings import Span, fill_rings
+from .templates import Template, flat_template, lenticular_template
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
     """The mesh of one yarn, planned.
 
-    ``places`` of its control planes along the cell (mm) and ``layers``, the shares from 0 to 1
+    ``sections`` and ``places`` of its control planes along the cell (mm) and ``layers``, the shares from 0 to 1
     at which nodes lie between two of them; ``strips`` maps each side of the skin to the places
     of its nodes in the section's outline and to their shares of the strip, in the strip's own
     order; ``contacts`` lists (segment, side) of the faces that touch; ``middles`` per segment
-    the sides and their middles (v, z), mm; ``centre`` is the coordinate of the axis.
+    the sides and their middles (v, z), mm; ``centre`` is the coordinate of the axis. ``moved``,
+    (layers of nodes, inner, 2) in mm across and upwards, leads the inner nodes away from where the
+    template puts them.
     """
 
     yarn: Yarn
+    sections: tuple[Section, ...]
     places: np.ndarray
     layers: tuple[np.ndarray, ...]
-    template: Template
+    template: Template | None
     strips: dict[str, tuple[np.ndarray, np.ndarray]]
     contacts: tuple[tuple[int, str], ...]
     middles: tuple[tuple[list[str], np.ndarray], ...]
     centre: float
+    moved: np.ndarray | None = None
 
     @property
     def along_axis(self) -> int:
@@ -46,8 +52,23 @@ class Plan:
         return np.concatenate([[0], np.cumsum([len(shares) - 1 for shares in self.layers])])
 
 
-def plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
-    """Plan the mesh of one yarn so that its contact nodes will coincide with those of the yarns it crosses."""
+def plan_yarns(fabric: SolvedFabric, yarns: Sequence[Yarn], options: MeshOptions) -> list[Plan]:
+    """Plan the meshes of yarns so that the contact nodes will coincide with those of the yarns they cross."""
+    plans = [_plan_yarn(fabric, yarn, options) for yarn in yarns]
+    if fabric.section != "round":
+        return plans
+
+    rings = {}
+    for direction, across in zip(DIRECTIONS, (options.across, options.crossing)):
+        alike = [plan for plan in plans if plan.yarn.direction == direction]
+        spans = [list(map(Span, plan.sections, plan.sections[1:], plan.layers)) for plan in alike]
+        if spans:
+            template, moved = fill_rings(spans, alike[0].strips, across, options.through - 2)
+            rings |= {plan.yarn: (template, shift) for plan, shift in zip(alike, moved)}
+    return [replace(plan, template=rings[plan.yarn][0], moved=rings[plan.yarn][1]) for plan in plans]
+
+
+def _plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
     planes = control_planes(fabric, yarn)
     path = trajectory(fabric, yarn, planes)
     sections = control_sections(fabric, yarn, planes)
@@ -60,10 +81,11 @@ def plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
         # along a crossing nodes lie as they do across the side of the crossed yarn that is touched
         columns = _columns(fabric.frame(crossed), "top" if high else "bottom", across[crossed])
         layers += [gap, *map(_shares, columns), gap]
-    template, strips = _outline(frame, sections, across[yarn.direction], options.through)
+    template, strips = _outline(frame, across[yarn.direction], options.through)
     contacts = [(contact_segment(planes, k), "bottom" if high else "top") for k, high in enumerate(yarn.high)]
     return Plan(
         yarn=yarn,
+        sections=sections,
         places=np.array([plane.place for plane in planes]),
         layers=tuple(layers),
         template=template,
@@ -103,14 +125,16 @@ def _columns(frame: Frame, side: str, across: int) -> list[np.ndarray]:
 
 
 def _outline(
-    frame: Frame, sections, across: int, through: int
-) -> tuple[Template, dict[str, tuple[np.ndarray, np.ndarray]]]:
-    """A section's template, and each strip's places in its outline with their shares of the strip."""
+    frame: Frame, across: int, through: int
+) -> tuple[Template | None, dict[str, tuple[np.ndarray, np.ndarray]]]:
+    """A section's template, and each strip's places in its outline with their shares of the strip.
+
+    A round section's template is chosen later, for all yarns of a direction.
+    """
     columns = {side: _columns(frame, side, across) for side in ("bottom", "top")}
-    upright = 0
+    upright, template = 0, None
     if frame.form == "round":
         upright = through - 2  # the template adds a layer below and above
-        template = round_template(across, upright, _INSETS[0])
     else:
         places = np.unique(np.concatenate(columns["bottom"]))
         across = len(places) - 1
@@ -119,7 +143,8 @@ def _outline(
         else:
             k = through // 2
             template = lenticular_template(across, through, (places[k] - places[0]) / (places[2 * k] - places[0]))
-    around = np.arange(template.outline + 1) % template.outline
+    outline = 2 * (across + upright)
+    around = np.arange(outline + 1) % outline
     bottom, right = around[: across + 1], around[across : across + upright + 1]
     top = around[across + upright : 2 * across + upright + 1][::-1]
     left = around[2 * across + upright :][::-1]
@@ -128,7 +153,7 @@ def _outline(
         slots = {"bottom": bottom, "top": top, "right_lower": right[: half + 1], "right_upper": right[half:][::-1]}
         slots |= {"left_lower": left[: half + 1][::-1], "left_upper": left[half:]}
         strips = {side: (nodes, np.linspace(0.0, 1.0, len(nodes))) for side, nodes in slots.items()}
-        return _best_ring(sections, strips, across, upright), strips
+        return None, strips
     strips = {}
     for side, level, nodes in (("bottom", "lower", bottom), ("top", "upper", top)):
         names = [f"left_{level}", side, f"right_{level}"] if len(columns[side]) == 3 else [side]
@@ -141,23 +166,6 @@ def _outline(
             name: (nodes, np.linspace(0.0, 1.0, through + 1)) for name, nodes in (("left", left), ("right", right))
         }
     return template, strips
-
-
-_INSETS = [(lateral, upright) for upright in (0.08, 0.12, 0.17, 0.22) for lateral in np.geomspace(0.002, 0.1, 14)]
-"""Thicknesses of a round section's ring to choose from, as shares of width and height."""
-
-
-def _best_ring(sections, strips: dict, across: int, upright: int) -> Template:
-    """The ring with which the worst corner over a yarn's control sections is the best."""
-    outlines = []
-    for section in {id(section): section for section in sections}.values():
-        outline = np.empty((2 * (across + upright), 2))
-        for side, (nodes, shares) in strips.items():
-            outline[nodes] = section.strips[side].at(shares)
-        outlines.append(outline)
-    templates = [round_template(across, upright, inset) for inset in _INSETS]
-    worst = [min(worst_corner(template, outline) for outline in outlines) for template in templates]
-    return templates[int(np.argmax(worst))]
 
 
 def _middles(surface: Skin, segments: int) -> tuple[tuple[list[str], np.ndarray], ...]:

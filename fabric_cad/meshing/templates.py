@@ -98,6 +98,21 @@ def round_template(across: int, through: int, inset: tuple[float, float]) -> Tem
     return _template(outline, [block, *ring])
 
 
+def block_modes(across: int, through: int) -> np.ndarray:
+    """Displacements of the inner block of :func:`round_template`, shape (inner, modes), to smooth it by.
+
+    They are bilinear between seven columns, of which two are near either side, and three rows.
+    """
+    near, far = max(1, round(across / 12)), round(across / 4)
+    columns = {0, near, far, round(across / 2), across - far, across - near, across}
+    rows = {0, through // 2, through}
+    s, t = (
+        np.array([np.interp(np.arange(parts + 1), sorted(knots), hat) for hat in np.eye(len(knots))])
+        for parts, knots in ((across, columns), (through, rows))
+    )
+    return np.einsum("ki,lj->ijkl", s, t).reshape((across + 1) * (through + 1), -1)
+
+
 def _sides(across: int, through: int) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Nodes in the outline of a four-sided section, and its bottom, top, left and right as weights on them."""
     outline = 2 * (across + through)
@@ -146,10 +161,10 @@ def _coons(bottom: np.ndarray, top: np.ndarray, left: np.ndarray, right: np.ndar
 
 
 def worst_corner(template: Template, outline: np.ndarray) -> float:
-    """Smallest sine of a quadrilateral's corner in a section with the given outline (nodes, 2), mm."""
-    nodes = np.vstack([outline, template.weights @ outline])
-    corners = nodes[template.quads]
-    ahead, behind = (np.roll(corners, shift, axis=1) - corners for shift in (-1, 1))
+    """Smallest sine of a quadrilateral's corner in sections with the given outlines (..., nodes, 2), mm."""
+    nodes = np.concatenate([outline, template.weights @ outline], axis=-2)
+    corners = nodes[..., template.quads, :]
+    ahead, behind = (np.roll(corners, shift, axis=-2) - corners for shift in (-1, 1))
     cross = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
     return float((cross / np.linalg.norm(ahead, axis=-1) / np.linalg.norm(behind, axis=-1)).min())
 

@@ -4,7 +4,7 @@ from .cell import draw_cell, show_cell
 from .cuts import Outline, cut_along
 from .deformed import draw_deformed
 from .series import State, write_series
-from .vtu import pyvista_blocks, pyvista_grid, scaled_jacobians, write_vtu
+from .vtu import pyvista_blocks, pyvista_grid, write_vtu
 
 __all__ = [
     "Outline",
@@ -14,7 +14,6 @@ __all__ = [
     "draw_deformed",
     "pyvista_blocks",
     "pyvista_grid",
-    "scaled_jacobians",
     "show_cell",
     "write_series",
     "write_vtu",

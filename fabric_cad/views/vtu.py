@@ -8,6 +8,7 @@ import numpy as np
 
 from ..interrupts import uninterrupted
 from ..meshing.mesh import Mesh
+from ..meshing.quality import Quality
 from ..weaves import DIRECTIONS, direction_of
 from .library import pyvista
 
@@ -18,19 +19,15 @@ def grid_of(mesh: Mesh):
     return vtk.UnstructuredGrid({vtk.CellType.HEXAHEDRON: mesh.hexahedra}, mesh.points)
 
 
-def scaled_jacobians(mesh: Mesh) -> np.ndarray:
-    """Scaled Jacobian (elements,) of every hexahedron, as Verdict defines it."""
-    return grid_of(mesh).cell_quality("scaled_jacobian").cell_data["scaled_jacobian"]
-
-
-def write_vtu(mesh: Mesh, quality: np.ndarray, path: str | Path) -> None:
+def write_vtu(mesh: Mesh, quality: Quality, path: str | Path) -> None:
     """Write the mesh for ParaView with yarn number (from 1), direction (0 weft, 1 warp), fibre axis and quality.
 
-    Raises OSError where the file cannot be written whole.
+    Of the quality: ``scaled_jacobian``, ``opposite_edge_ratio``, ``least_angle`` (deg) and ``aspect``. Raises OSError where the file cannot be written whole.
     """
     grid = described(mesh)
     grid.cell_data["fibre_axis"] = mesh.fibre_axes()
-    grid.cell_data["scaled_jacobian"] = quality
+    for name in ("scaled_jacobian", "opposite_edge_ratio", "least_angle", "aspect"):
+        grid.cell_data[name] = getattr(quality, name)
     write_grid(grid, path)
 
 
