@@ -109,8 +109,9 @@ def test_elements_are_hexahedra_as_good_as_the_edges_allow(made):
     assert mesh["end_nodes"] == mesh["matching_end_nodes"] > 0
     allowed = allowed_scaled_jacobian(made.fabric)
     assert mesh["scaled_jacobian_edges_allow"] == allowed
-    least = 0.25 if made.fabric.section == "round" else 0.30
-    assert mesh["min_scaled_jacobian"] >= (least if allowed >= 0.30 else 0.9 * allowed)
+    assert mesh["min_scaled_jacobian"] >= min(0.30, 0.9 * allowed)
+    assert mesh["min_opposite_edge_ratio"] > 0.01  # no side is collapsed
+    assert 0 < mesh["min_corner_angle_deg"] < 90 < mesh["max_corner_angle_deg"] < 180 and mesh["max_aspect"] > 1
 
 
 def test_volumes_are_those_of_the_model(made):
@@ -219,7 +220,10 @@ def test_mesh_file_by_another_reader(made):
 def test_vtu_by_another_reader(twill32):
     mesh = meshio.read(twill32.file("vtu"))
     data = {name: blocks[0] for name, blocks in mesh.cell_data.items()}
-    assert set(data) == {"yarn", "direction", "fibre_axis", "scaled_jacobian"}
+    assert set(data) == {
+        *("yarn", "direction", "fibre_axis"),
+        *("scaled_jacobian", "opposite_edge_ratio", "least_angle", "aspect"),
+    }
     assert data["scaled_jacobian"].min() == pytest.approx(twill32.report["mesh"]["min_scaled_jacobian"])
     assert np.linalg.norm(data["fibre_axis"], axis=1) == pytest.approx(1)
     fibre = np.abs(data["fibre_axis"])

@@ -55,9 +55,9 @@ _CHUNK = 16384  # elements, so that all of one chunk stays in the cache
 class Quality:
     """Figures (elements,) of hexahedra.
 
-    ``scaled_jacobian``; ``opposite_edge_ratio``, the shortest over the longest of the four edges of one direction,
-    the least of three; ``least_angle`` and ``greatest_angle`` of the corners of their faces, deg; ``aspect``, the longest
-    over the shortest principal axis (Verdict's maximum edge ratio).
+    ``scaled_jacobian``; ``opposite_edge_ratio``, the shortest over the longest of the four edges of one
+    direction, the least of three; ``least_angle`` and ``greatest_angle`` of the corners of their faces, deg;
+    ``aspect``, the longest over the shortest principal axis (Verdict's maximum edge ratio).
     """
 
     scaled_jacobian: np.ndarray
