@@ -45,7 +45,8 @@ def uninterrupted() -> Iterator[None]:
     """Hold these signals back until the block is done: while files move into place, and while libraries load.
 
     CadQuery and VTK, interrupted halfway through their import, crash, or report a part of
-    themselves as missing. Does nothing off the main thread, which signals do not reach.
+    themselves as missing; and where a module was just making a dataclass, which takes exec, Python ends
+    with the signal in place of our exit status. Does nothing off the main thread, which signals do not reach.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

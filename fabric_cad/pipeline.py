@@ -116,13 +116,15 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
     """Mesh the STEP into the ``.msh`` beside it, and measure that."""
     msh = made.step.with_suffix(".msh")
     with stages("mesh"):
-        from .meshing.mesher import mesh_cell, read_mesh
+        with uninterrupted():
+            from .meshing.mesher import mesh_cell, read_mesh
 
         mesh_cell(made.step, made.fabric, options, msh)
         mesh = read_mesh(msh)
     with stages("quality"):
-        from .edges import allowed_scaled_jacobian
-        from .meshing.quality import mesh_quality
+        with uninterrupted():
+            from .edges import allowed_scaled_jacobian
+            from .meshing.quality import mesh_quality
 
         return Meshed(mesh, mesh_quality(mesh), allowed_scaled_jacobian(made.fabric))
 
@@ -179,7 +181,8 @@ def make_cell(
         made = make_step(row, folder, stages)
         meshed = make_mesh(made, options, stages)
         with stages("write deck"):
-            from .decks.cell import write_deck
+            with uninterrupted():
+                from .decks.cell import write_deck
 
             write_deck(meshed.mesh, folder / f"{name}.inp", f"elementary cell of {name}", dialect)
         from .views import draw_cell, write_vtu
