@@ -9,7 +9,7 @@ the residual corner - 90 deg, then with cos(corner) / sin(corner)^2, the sum of 
 
 over displacements of the inner nodes that are bilinear on a coarse grid over the inner block. The second
 sum keeps cells even, so that no edge collapses. Steps are Levenberg's and Marquardt's, taken by all
-sections at once; a step that would fold a cell is refused. Outline nodes never move.
+sections of a chunk at once; a step that would fold a cell is refused. Outline nodes never move.
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ _STAGES = ((False, 7), (True, 8))
 _EVENNESS = 0.2
 _SETTLED = 1e-3
 """Share by which a step has to lower the sum for another to follow."""
+_NUMBERS = 4_000_000
+"""Rates kept at once (32 MB), which bounds how many sections take their steps together."""
 
 
 def smoothed(template: Template, modes: np.ndarray, outlines: np.ndarray) -> np.ndarray:
@@ -38,8 +40,11 @@ def smoothed(template: Template, modes: np.ndarray, outlines: np.ndarray) -> np.
     cells = _Cells.of(template, modes)
 
     coefficients = np.zeros((len(outlines), modes.shape[1], 2))
-    for sharp, steps in _STAGES:
-        _descend(cells, nodes, coefficients, sharp, steps)
+    together = max(1, _NUMBERS // (12 * len(template.quads) * modes.shape[1]))
+    for first in range(0, len(outlines), together):
+        some = slice(first, first + together)
+        for sharp, steps in _STAGES:
+            _descend(cells, nodes[some], coefficients[some], sharp, steps)  # in place: a slice is a view
     return coefficients * size
 
 

@@ -1,4 +1,4 @@
-"""A mesh as VTK's unstructured grid: its quality, and files for ParaView."""
+"""A mesh as VTK's unstructured grid, and files for ParaView."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ def grid_of(mesh: Mesh):
 def write_vtu(mesh: Mesh, quality: Quality, path: str | Path) -> None:
     """Write the mesh for ParaView with yarn number (from 1), direction (0 weft, 1 warp), fibre axis and quality.
 
-    Of the quality: ``scaled_jacobian``, ``opposite_edge_ratio``, ``least_angle`` (deg) and ``aspect``. Raises OSError where the file cannot be written whole.
+    Of the quality: ``scaled_jacobian``, ``opposite_edge_ratio``, ``least_angle`` (deg) and ``aspect``.
+    Raises OSError where the file cannot be written whole.
     """
     grid = described(mesh)
     grid.cell_data["fibre_axis"] = mesh.fibre_axes()
