@@ -72,6 +72,21 @@ lint: $(READY) ## check the sources
 	@$(BIN)/ruff check -q fabric_cad tests
 	@$(BIN)/ruff format -q --check fabric_cad tests
 
+.PHONY: coverage
+coverage: $(READY) ## run the tests and tell which lines they reach: terminal, build/coverage/index.html
+	@mkdir -p build
+	@$(BIN)/python -m pytest -n 2 --dist loadfile --cov=fabric_cad --cov-report=term --cov-report=html:build/coverage
+
+.PHONY: docs
+docs: $(READY) ## build the documentation into build/docs; a warning is an error
+	@$(BIN)/python -m sphinx -q -W --keep-going -b html -d build/.doctrees docs build/docs
+	@$(BIN)/python tests/links.py build/docs
+	@echo build/docs/index.html
+
+.PHONY: notebooks
+notebooks: $(READY) ## run the notebooks and store them with their outputs
+	@$(BIN)/python tests/notebooks.py
+
 .PHONY: stability
 stability: $(READY) ## 200 random fabrics, each through CAD and mesh in a child process
 	@$(BIN)/python tests/stability.py
@@ -95,4 +110,4 @@ lock: ## renew requirements.lock from pyproject.toml (needs uv)
 
 .PHONY: clean
 clean: ## remove results (build); keeps .venv
-	@rm -rf build
+	@rm -rf build docs/notebooks

@@ -331,9 +331,9 @@ def test_ctrl_c_leaves_a_study_that_goes_on(here):
     assert 1 <= lines() < 12 and not Path("build/study/table.csv").exists()
 
 
-def test_the_readmes_example_runs(here):
-    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
-    (example,) = (part.split("```")[0] for part in readme.split("```toml\n")[1:])
+def test_the_example_of_the_documentation_runs(here):
+    page = (Path(__file__).parents[1] / "docs/studies.md").read_text(encoding="utf-8")
+    (example,) = (part.split("```")[0] for part in page.split("```toml\n")[1:])
     counts = run_study(study(example))
     assert counts.done + counts.refused == 200 and counts.done > 100
     rows = Path("build/study/sensitivity.csv").read_text().splitlines()
