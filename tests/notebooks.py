@@ -1,6 +1,6 @@
-"""Runs the notebooks and stores them with their outputs; ``python tests/notebooks.py [NAME ...]``, names without ending.
+"""Runs the notebooks and stores them with their outputs: ``python tests/notebooks.py [NAME ...]``.
 
-What is stored depends on nothing but the notebook: no times, no paths of a machine, pictures with as few colours as they need.
+What is stored depends on nothing but the notebook: no times, no paths of a machine, pictures in few colours.
 """
 
 from __future__ import annotations
