@@ -88,8 +88,12 @@ notebooks: $(READY) ## run the notebooks and store them with their outputs
 	@$(BIN)/python tests/notebooks.py
 
 .PHONY: stability
-stability: $(READY) ## 200 random fabrics, each through CAD and mesh in a child process
-	@$(BIN)/python tests/stability.py
+stability: $(READY) ## 200 random fabrics of every part (PART=narrow SEEDS=0-50), each through CAD and mesh
+	@$(BIN)/python tests/stability.py $(PART:%=--part %) $(SEEDS:%=--seeds %)
+
+.PHONY: fuzz
+fuzz: $(READY) ## broken tables, TOML, drafts and command lines, kills, two runs at once (PART=tables SEEDS=0-50)
+	@$(BIN)/python tests/fuzz.py $(PART:%=--part %) $(SEEDS:%=--seeds %)
 
 .PHONY: bench
 bench: $(READY) ## time and memory of every stage, as one table

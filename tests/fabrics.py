@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from fabric_cad.patterns import written
 from fabric_cad.tables import Family, read_family
+from fabric_cad.weaves import pattern_faults
 
 
 def table(family: str, *rows: dict, folder: Path | None = None) -> Family:
@@ -25,43 +27,84 @@ def _text(value) -> str:
     return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
 
 
-def random_row(rng: np.random.Generator, name: str = "random") -> tuple[str, dict]:
-    """(family, row) of a valid-looking fabric: m, n to 5, harness to 12, widths 0.6 to 0.97 of
-    the spacing, crimps 0.0005 to 0.03, balanced or not, lenticular or flat."""
-    family = str(rng.choice(["plain", "twill", "satin"]))
-    row: dict = {"name": name}
-    if family == "twill":
-        row |= {"over": int(rng.integers(1, 6)), "under": int(rng.integers(1, 6))}
-    if family == "satin":
-        harness = int(rng.integers(5, 13))
-        row |= {"harness": harness, "step": int(rng.choice([k for k in range(1, harness) if gcd(k, harness) == 1]))}
+def random_row(
+    rng: np.random.Generator,
+    name: str = "random",
+    widths: tuple[float, float] = (0.6, 0.97),
+    family: str = "",
+    ratio: float | None = None,
+) -> tuple[str, dict]:
+    """(family, row) of a valid-looking fabric: m, n to 5, harness to 12, crimps 0.0005 to 0.03, lenticular or flat.
+
+    ``widths`` are its bounds as shares of the spacing; ``ratio`` is about that of a weft's thickness to a
+    warp's (None: either a balanced fabric, or one of yarns about equally thick).
+    """
+    family = family or str(rng.choice(["plain", "twill", "satin"]))
+    row: dict = {"name": name} | _weave(rng, family)
     spacing = float(np.exp(rng.uniform(np.log(0.4), np.log(6.0))))
-    row |= _direction(rng, "weft", spacing)
-    if rng.random() < 0.5:
-        row |= _direction(rng, "warp", spacing * float(rng.uniform(0.7, 1.4)))
-        row |= _thickness(rng, family, row)
+    row |= _direction(rng, "weft", spacing, widths)
+    if ratio is not None or rng.random() < 0.5:
+        row |= _direction(rng, "warp", spacing * float(rng.uniform(0.7, 1.4)), widths)
+        row |= _thickness(rng, row, ratio)
     if rng.random() < 0.3:
         row |= {"section": "flat", "lateral_height_mm": spacing * float(rng.uniform(0.002, 0.03))}
     return family, row
 
 
-def _direction(rng: np.random.Generator, direction: str, spacing: float) -> dict:
+def _weave(rng: np.random.Generator, family: str) -> dict:
+    """The weave columns of a row."""
+    if family == "twill":
+        return {"over": int(rng.integers(1, 6)), "under": int(rng.integers(1, 6))}
+    if family == "satin":
+        harness = int(rng.integers(5, 13))
+        return {"harness": harness, "step": int(rng.choice([k for k in range(1, harness) if gcd(k, harness) == 1]))}
+    return {"pattern": written(_pattern(rng))} if family == "pattern" else {}
+
+
+def _pattern(rng: np.random.Generator) -> tuple[str, ...]:
+    """An interlacement of 2 to 8 wefts and warps, as likely over as under, that holds together."""
+    while True:
+        wefts, warps = rng.integers(2, 9, size=2)
+        pattern = tuple("".join(row) for row in rng.choice(["0", "1"], size=(wefts, warps)))
+        if not pattern_faults(pattern):
+            return pattern
+
+
+def random_pattern_row(rng: np.random.Generator, name: str = "pattern") -> tuple[str, dict]:
+    """A fabric of any weave, widths 0.6 to 0.97 of the spacing."""
+    return random_row(rng, name, family="pattern")
+
+
+def random_narrow_row(rng: np.random.Generator, name: str = "narrow") -> tuple[str, dict]:
+    """A fabric with narrow gaps: widths 0.95 to 0.999 of the spacing; one in four of any weave."""
+    return random_row(rng, name, (0.95, 0.999), "pattern" if rng.random() < 0.25 else "")
+
+
+def random_unequal_row(rng: np.random.Generator, name: str = "unequal") -> tuple[str, dict]:
+    """A fabric whose wefts are 1/4 to 4 times as thick as its warps; one in four of any weave."""
+    ratio = float(np.exp(rng.uniform(-np.log(4), np.log(4))))
+    return random_row(rng, name, family="pattern" if rng.random() < 0.25 else "", ratio=ratio)
+
+
+def _direction(rng: np.random.Generator, direction: str, spacing: float, widths: tuple[float, float]) -> dict:
     return {
         f"{direction}_density_per_mm": 1 / spacing,
-        f"{direction}_width_mm": spacing * float(rng.uniform(0.6, 0.97)),
+        f"{direction}_width_mm": spacing * float(rng.uniform(*widths)),
         f"{direction}_crimp": float(np.exp(rng.uniform(np.log(0.0005), np.log(0.03)))),
     }
 
 
-def _thickness(rng: np.random.Generator, family: str, row: dict) -> dict:
-    """One thickness, drawn around what the two crimps imply for equally thick yarns."""
+def _thickness(rng: np.random.Generator, row: dict, ratio: float | None) -> dict:
+    """One thickness, drawn around what the two crimps imply for yarns of about that ratio of thicknesses."""
     from fabric_cad.lengths import slope_from_crimp
 
-    repeat = {"plain": 2, "twill": row.get("over", 0) + row.get("under", 0), "satin": row.get("harness")}[family]
+    repeat = row["over"] + row["under"] if "over" in row else row.get("harness", 2)
     total = 0.0
     for direction, crossed in (("weft", "warp"), ("warp", "weft")):
         a, c = 1 / row[f"{crossed}_density_per_mm"], row[f"{crossed}_width_mm"]
         total += float(slope_from_crimp(row[f"{direction}_crimp"], repeat / 2 * a, c, a - c)) * (a - c / 2)
+    if ratio is not None:
+        return {"weft_thickness_mm": total * ratio / (1 + ratio)}
     kind = str(rng.choice(["weft_thickness_mm", "warp_thickness_mm", "fabric_thickness_mm"]))
     if kind == "fabric_thickness_mm":
         return {kind: total * float(rng.uniform(0.98, 1.2))}

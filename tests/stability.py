@@ -1,9 +1,13 @@
 """Random fabrics through every stage, each in a child process with a time limit.
 
-``python tests/stability.py [COUNT] [--kind KIND] [--first SEED] [--workers N]``: every fabric must
+``python tests/stability.py [--part PART] [--seeds FIRST-END] [--workers N]``: every fabric must
 come out consistent or be refused for a reason its numbers give; anything else fails the run.
-Standard fabrics have contact over the whole width; general ones have chords, offsets and all
-three lateral forms.
+
+standard  contact over the whole width, widths 0.6 to 0.97 of the spacing
+general   chords, offsets and all three lateral forms
+patterns  any weave
+narrow    widths 0.95 to 0.999 of the spacing
+unequal   one direction's yarns up to four times as thick as the other's
 """
 
 from __future__ import annotations
@@ -22,6 +26,14 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 TIME_LIMIT = 180.0  # s a fabric
+DRAWS = {
+    "standard": "random_row",
+    "general": "random_general_row",
+    "patterns": "random_pattern_row",
+    "narrow": "random_narrow_row",
+    "unequal": "random_unequal_row",
+}
+"""Parts, and what draws their rows in :mod:`fabrics`."""
 
 
 @dataclass(frozen=True)
@@ -39,26 +51,29 @@ class Outcome:
         return self.kind in ("consistent", "refused")
 
     @property
+    def wanted(self) -> float:
+        """The scaled Jacobian a mesh should have: 0.30, or 0.9 of what the yarns' edges allow."""
+        return min(0.30, 0.9 * self.allowed)
+
+    @property
     def good_elements(self) -> bool:
-        """At least 0.30, or 0.9 of what the yarns' edges allow."""
-        return not self.quality < min(0.30, 0.9 * self.allowed)
+        return not self.quality < self.wanted
 
     def __str__(self) -> str:
         quality = "" if np.isnan(self.quality) else f"  scaled Jacobian {self.quality:.3f} of {self.allowed:.3f}"
         return f"{self.seed:6d}  {self.kind:10}  {self.what}{quality}"
 
 
-def _child(seed: int, kind: str, pipe) -> None:
-    from fabrics import random_general_row, random_row, table
+def _child(seed: int, part: str, pipe) -> None:
+    import fabrics
 
     from fabric_cad.errors import InputError
     from fabric_cad.pipeline import Stages, make_cell
 
     reached = ["table"]
     try:
-        draw = {"standard": random_row, "general": random_general_row}[kind]
-        family, row = draw(np.random.default_rng(seed), f"r{seed}")
-        measured = table(family, row)
+        family, row = getattr(fabrics, DRAWS[part])(np.random.default_rng(seed), f"r{seed}")
+        measured = fabrics.table(family, row)
         with tempfile.TemporaryDirectory() as out:
             report = make_cell(measured, out, stages=Stages(lambda name, seconds: reached.append(name)))
         mesh = report["mesh"]
@@ -66,7 +81,10 @@ def _child(seed: int, kind: str, pipe) -> None:
         if not 0 < fraction < 1:
             raise ValueError(f"yarn volume fraction {fraction}")
         weave = report["weave"]
-        what = f"{family} {weave['over']}*{weave['under']} {report['section']} {report['parameters']} parameters"
+        counts = (
+            f"{weave['wefts']} x {weave['warps']}" if weave["over"] is None else f"{weave['over']}*{weave['under']}"
+        )
+        what = f"{family} {counts} {report['section']} {report['parameters']} parameters"
         pipe.send(Outcome(seed, "consistent", what, mesh["min_scaled_jacobian"], mesh["scaled_jacobian_edges_allow"]))
     except InputError as error:
         pipe.send(Outcome(seed, "refused", str(error).split(": ", 1)[-1]))
@@ -74,13 +92,13 @@ def _child(seed: int, kind: str, pipe) -> None:
         pipe.send(Outcome(seed, "failed", f"at {reached[-1]}: {type(error).__name__}: {error}"))
 
 
-def try_fabric(seed: int, kind: str) -> Outcome:
+def try_fabric(seed: int, part: str) -> Outcome:
     """One random fabric through the pipeline in a process of its own."""
     context = multiprocessing.get_context("forkserver" if sys.platform != "win32" else "spawn")
     if sys.platform != "win32":
         context.set_forkserver_preload(["fabric_cad.cad", "fabric_cad.masters.woven", "fabric_cad.views", "gmsh"])
     receive, send = context.Pipe(duplex=False)
-    process = context.Process(target=_child, args=(seed, kind, send))
+    process = context.Process(target=_child, args=(seed, part, send))
     process.start()
     send.close()
     outcome = None
@@ -98,30 +116,48 @@ def try_fabric(seed: int, kind: str) -> Outcome:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("count", type=int, nargs="?", default=200)
-    parser.add_argument("--kind", choices=("standard", "general"), action="append", help="default: both")
-    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--part", choices=DRAWS, action="append", help="default: all")
+    parser.add_argument("--seeds", type=seed_range, metavar="FIRST-END", default=range(200), help="default: 0-200")
     parser.add_argument("--workers", type=int, default=2)
     settings = parser.parse_args()
-    kinds = settings.kind or ["standard", "general"]
-    fine = [_run(kind, range(settings.first, settings.first + settings.count), settings.workers) for kind in kinds]
-    return 0 if all(fine) else 1
+    runs = {part: _run(part, settings.seeds, settings.workers) for part in settings.part or DRAWS}
+    print()
+    for part, outcomes in runs.items():
+        print("\n".join(summary(part, outcomes)))
+    return 0 if all(outcome.fine for outcomes in runs.values() for outcome in outcomes) else 1
 
 
-def _run(kind: str, seeds: range, workers: int) -> bool:
-    """Try fabrics of one kind and print what became of them; True where all are fine."""
+def seed_range(text: str) -> range:
+    """``FIRST-END`` as a range, the end not in it; a single number is that seed."""
+    first, _, end = text.partition("-")
+    return range(int(first), int(end) if end else int(first) + 1)
+
+
+def _run(part: str, seeds: range, workers: int) -> list[Outcome]:
+    """Try the fabrics of one part; what became of them is printed as they end."""
     start = time.perf_counter()
+    outcomes = []
     with ThreadPoolExecutor(workers) as pool:
-        outcomes = []
-        for outcome in pool.map(lambda seed: try_fabric(seed, kind), seeds):
+        for outcome in pool.map(lambda seed: try_fabric(seed, part), seeds):
             outcomes.append(outcome)
-            print(outcome, flush=True)
+            print(f"{part:9}{outcome}", flush=True)
+    print(f"{part}: {time.perf_counter() - start:.0f} s", flush=True)
+    return outcomes
+
+
+def summary(part: str, outcomes: list[Outcome], shown: int = 5) -> list[str]:
+    """Lines that say what became of a part, and its lowest qualities against what is wanted."""
     counts = Counter(outcome.kind for outcome in outcomes)
-    poor = [outcome.seed for outcome in outcomes if not outcome.good_elements]
-    summary = ", ".join(f"{number} {what}" for what, number in counts.items())
-    print(f"{kind}: {summary} in {time.perf_counter() - start:.0f} s")
-    print(f"{kind}: below the quality the edges allow: {poor or 'none'}", flush=True)
-    return all(outcome.fine for outcome in outcomes)
+    meshed = [outcome for outcome in outcomes if not np.isnan(outcome.quality)]
+    lowest = sorted(meshed, key=lambda outcome: outcome.quality / outcome.wanted)[:shown]
+    poor = sum(not outcome.good_elements for outcome in meshed)
+    lines = [
+        f"{part}: {len(outcomes)} fabrics: " + ", ".join(f"{number} {what}" for what, number in counts.items()),
+        f"  below min(0.30, 0.9 of what the yarns' edges allow): {poor} of {len(meshed)}; the lowest against it:",
+    ]
+    lines += [f"    {outcome.quality:.3f} of {outcome.wanted:.3f}  {outcome.seed} {outcome.what}" for outcome in lowest]
+    lines += [f"  {outcome}" for outcome in outcomes if not outcome.fine]
+    return lines
 
 
 if __name__ == "__main__":
