@@ -19,6 +19,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import fabric_cad
+
 TIME_LIMIT = 20.0  # s a command
 MOST_PRINTED = 40_000  # characters a refusal may have
 
@@ -27,9 +29,9 @@ MOST_PRINTED = 40_000  # characters a refusal may have
 class Trial:
     """A command to run in a folder that holds ``files`` (bytes; None: a folder of that name).
 
-    ``leaves`` matches the paths that a success may leave, ``leaves_refused`` those of a refusal; ``places`` are texts of which a refusal names
-    one at least; ``prepare`` does to the child, in its folder, what no file can (a closed output);
-    ``fresh``: in a new Python, not in a fork of this one.
+    ``leaves`` matches the paths that a success may leave, ``leaves_refused`` those of a refusal; ``places`` are
+    texts of which a refusal names one at least; ``prepare`` does to the child, in its folder, what no file can (a
+    closed output); ``fresh``: in a new Python, not in a fork of this one.
     """
 
     name: str
@@ -221,7 +223,8 @@ def wait(process: int, seconds: float) -> int | None:
 
 
 def _new_python(trial: Trial, place: Path, temporary: Path, out: int, err: int) -> int | None:
-    environment = os.environ | {"TMPDIR": str(temporary), "PYTHONPATH": str(Path(__file__).parents[2])}
+    package = str(Path(fabric_cad.__file__).parents[1])
+    environment = os.environ | {"TMPDIR": str(temporary), "PYTHONPATH": package}
     command = [sys.executable, "-m", "fabric_cad", *trial.arguments]
     options = {"cwd": place, "env": environment, "stdin": subprocess.DEVNULL, "stdout": out, "stderr": err}
     try:
