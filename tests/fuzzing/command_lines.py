@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from collections.abc import Callable
 
@@ -104,13 +105,14 @@ def trial(seed: int) -> Trial:
     files: dict[str, bytes | None] = {f"families/{path.name}": path.read_bytes() for path in SHIPPED.glob("*.*")}
     files |= {"a_file": b"[WIF]\nVersion=1.1\n", "an empty folder": None}
     if seed < len(WRONG):
-        arguments, places = WRONG[seed]
+        arguments, named = WRONG[seed]
         statuses = (0, 2, NO_SOLVER) if "--ccx" in arguments or "a_file" in "".join(arguments) else (0, 2)
-        return Trial(_shown(arguments), arguments, files, places, LEAVES, statuses=statuses, fresh=seed % 10 == 5)
+        place = "|".join(map(re.escape, named))
+        return Trial(_shown(arguments), arguments, files, place, LEAVES, statuses=statuses, fresh=seed % 10 == 5)
     if seed < len(WRONG) + len(AROUND):
         arguments, prepare, statuses = AROUND[seed - len(WRONG)]
         name = f"{_shown(arguments)} with {prepare.__name__.strip('_').replace('_', ' ')}"
-        return Trial(name, arguments, files, ("",), LEAVES, LEAVES, statuses, prepare, fresh=True)
+        return Trial(name, arguments, files, "", LEAVES, LEAVES, statuses, prepare, fresh=True)
     return _drawn(np.random.default_rng((4, seed)), files)
 
 
@@ -122,7 +124,7 @@ def _drawn(rng: np.random.Generator, files) -> Trial:
         word = pick(rng, pool) if rng.random() < 0.7 else pick(rng, ODD_TEXTS)
         arguments.insert(int(rng.integers(len(arguments) + 1)), word.replace("\x00", ""))
     leaves = rf"({LEAVES})|.*out.*/.*|.*families/.*"
-    return Trial(_shown(arguments), tuple(arguments), files, ("",), leaves, LEAVES)
+    return Trial(_shown(arguments), tuple(arguments), files, "", leaves, LEAVES)
 
 
 def _shown(arguments) -> str:

@@ -9,6 +9,8 @@ import numpy as np
 from .mutations import ODD_TEXTS, encoded, pick, spoil_bytes, spoil_text
 from .trial import Trial
 
+PLACE = r"draft\.wif(:\d+: |: \[[A-Z ]+\]|: not a weaving draft|: (warp|weft) \d+)"
+
 
 def sound(rng: np.random.Generator) -> str:
     """A draft of a twill on 4 to 8 shafts, by tie-up and treadling or by liftplan."""
@@ -46,7 +48,7 @@ def trial(seed: int) -> Trial:
     content = encoded(rng, text)
     content = spoil_bytes(rng, content) if level >= 0.85 else content
     command = ("wif", "draft.wif", "--name", "mine")
-    return Trial("a spoilt draft", command, {"draft.wif": content}, ("draft.wif",), fresh=seed % 50 == 13)
+    return Trial("a spoilt draft", command, {"draft.wif": content}, PLACE, fresh=seed % 50 == 13)
 
 
 def _spoil_line(rng: np.random.Generator, text: str) -> str:

@@ -1,4 +1,8 @@
-"""``cell`` ended at random moments: the row's folder holds one complete result, and the next run tidies up."""
+"""``cell`` ended at random moments: the row's folder holds one complete result, and the next run tidies up.
+
+A third of the moments are drawn over the whole run, a third over its last fifth, and a third from when its
+report is written on, since what moves files into place is over in milliseconds.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ import os
 import signal
 import tempfile
 import time
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -67,6 +72,19 @@ class Place:
             return None, wrong
         return json.loads(contents["report.json"])["mesh"]["hexahedra"], []
 
+    def reported(self, process: int, rng: np.random.Generator) -> float:
+        """Wait until a run has written its report aside, or ended, and 0.1 to 300 ms more; these s."""
+        later = float(10 ** rng.uniform(-4, -0.5))
+        while not (any(self.reports()) or os.waitid(os.P_PID, process, os.WEXITED | os.WNOHANG | os.WNOWAIT)):
+            time.sleep(2e-4)
+        time.sleep(later)
+        return later
+
+    def reports(self) -> Iterator[Path]:
+        """Reports in the working folders of runs."""
+        for depth in (".*/report.json", ".*/*/report.json"):
+            yield from (self.root / "build").glob(depth)
+
     def litter(self) -> list[str]:
         """Whatever lies about beside the row's result; what is kept on purpose (locks) has no content."""
         paths = [*self.temporary.iterdir(), *(path for path in (self.root / "build").iterdir() if path != self.folder)]
@@ -97,14 +115,18 @@ def kill_run(seed: int) -> tuple[str, str, list[str]]:
     rng = np.random.default_rng((5, seed))
     seconds, old, new = undisturbed()
     signalled = SIGNALS[seed % 3]
-    moment = seconds * (rng.uniform(0, 1.05) if rng.random() < 0.5 else rng.uniform(0.8, 1.05))
+    share = (rng.uniform(0, 1.05), rng.uniform(0.8, 1.05), None)[seed // 6 % 3]
     with tempfile.TemporaryDirectory(prefix="fuzz-") as scratch:
         place = Place(Path(scratch))
         before = old if seed // 3 % 2 else None
         if before is not None and wait(place.start(OLD), CELL_LIMIT):
             return "the older run", "failed", [place.told()]
         process = place.start(NEW, "killed")
-        time.sleep(moment)
+        if share is None:
+            moment = f"{1e3 * place.reported(process, rng):.1f} ms after its report"
+        else:
+            time.sleep(share * seconds)
+            moment = f"{share * seconds:.2f} s after its start"
         wrong = []
         try:
             os.kill(process, signalled)
@@ -130,4 +152,4 @@ def kill_run(seed: int) -> tuple[str, str, list[str]]:
             elif litter := place.litter():
                 wrong.append(f"left after the next run: {', '.join(litter)}")
         ending = "new result" if elements == new else "old result" if elements else "none"
-        return f"{signalled.name} after {moment:.2f} s", ending, wrong
+        return f"{signalled.name} {moment}", ending, wrong

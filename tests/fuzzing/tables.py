@@ -16,6 +16,8 @@ FAMILIES = ("plain", "twill", "satin", "pattern")
 COMMANDS = (("list",), ("solve",), ("validate",), ("cell", ""))
 LEAVES = r"build/families(/(plain|twill|satin|pattern)\.csv)?"
 """What ``solve`` leaves: the tables that can be solved, also where others are refused."""
+CSV_PLACE = r"families/\w+\.csv:(\d+: | the table is empty)"
+WORKBOOK_PLACE = r"families/\w+\.(xlsx|ods): (\S.*![A-Z]+\d+: |\S.* row \d+: |cannot be read|only one sheet|.* empty)"
 
 
 def shipped_cells(family: str) -> list[list[str]]:
@@ -38,9 +40,11 @@ def trial(seed: int) -> Trial:
         other = pick(rng, [name for name in FAMILIES if name != family])
         files[f"families/{other}.csv"] = (SHIPPED / f"{other}.csv").read_bytes()
     name = f"{' '.join(command)} of a spoilt {family}.{kind}"
-    places = (f"families/{family}.{kind}:", *(("families:",) if kind != "csv" or command[0] == "cell" else ()))
+    place = CSV_PLACE if kind == "csv" else WORKBOOK_PLACE
+    if command[0] == "cell" or kind != "csv":  # the row is gone, or the workbook is no file that is read
+        place += "|^families: no "
     leaves = LEAVES if command == ("solve",) else r"(?!)"
-    return Trial(name, command, files, places, leaves, leaves, fresh=seed % 50 == 10)
+    return Trial(name, command, files, place, leaves, leaves, fresh=seed % 50 == 10)
 
 
 def csv_bytes(rng: np.random.Generator, cells: list[list[str]]) -> bytes:

@@ -66,6 +66,9 @@ VALUES = (
 )
 LEAVES = r"build/study/((table\.(parquet|csv))|sensitivity\.(csv|png|svg|pdf)|costs\.csv|\.lock|units.*)"
 
+PLACE = "{0}(:[0-9]+: |: [^ :]+: |: not TOML)"
+"""What is wrong has a line, is a key that is missing, or the end of the file."""
+
 
 def trial(seed: int) -> Trial:
     """A spoilt study, or one time in three a spoilt ``simulation.toml``."""
@@ -75,14 +78,14 @@ def trial(seed: int) -> Trial:
         text = (SHIPPED / "simulation.toml").read_text(encoding="utf-8")
         command = pick(rng, (("tension", "plain"), ("shear", "basket22"), ("tension", "twill32")))
         command = (*command, "--deck", "calculix")
-        files, name = families | {"families/simulation.toml": toml_bytes(rng, text)}, "families/simulation.toml"
-        return Trial(f"{' '.join(command)} by a spoilt simulation.toml", command, files, (name,), fresh=False)
+        files = families | {"families/simulation.toml": toml_bytes(rng, text)}
+        place = PLACE.format(r"families/simulation\.toml")
+        return Trial(f"{' '.join(command)} by a spoilt simulation.toml", command, files, place)
     text = pick(rng, STUDIES)
     files = families | {"study.toml": toml_bytes(rng, text)}
     base = text.split('"')[1]
-    return Trial(
-        f"a spoilt study of {base}", ("study", "study.toml"), files, ("study.toml",), LEAVES, fresh=seed % 50 == 12
-    )
+    place = PLACE.format(r"study\.toml")
+    return Trial(f"a spoilt study of {base}", ("study", "study.toml"), files, place, LEAVES, fresh=seed % 50 == 12)
 
 
 def toml_bytes(rng: np.random.Generator, text: str) -> bytes:

@@ -29,15 +29,15 @@ MOST_PRINTED = 40_000  # characters a refusal may have
 class Trial:
     """A command to run in a folder that holds ``files`` (bytes; None: a folder of that name).
 
-    ``leaves`` matches the paths that a success may leave, ``leaves_refused`` those of a refusal; ``places`` are
-    texts of which a refusal names one at least; ``prepare`` does to the child, in its folder, what no file can (a
-    closed output); ``fresh``: in a new Python, not in a fork of this one.
+    ``leaves`` matches the paths that a success may leave, ``leaves_refused`` those of a refusal; ``place`` is
+    found in every refusal; ``prepare`` does to the child, in its folder, what no file can (a closed output);
+    ``fresh``: in a new Python, not in a fork of this one.
     """
 
     name: str
     arguments: tuple[str, ...]
     files: Mapping[str, bytes | None]
-    places: tuple[str, ...]
+    place: str
     leaves: str = r"(?!)"
     leaves_refused: str = r"(?!)"
     statuses: tuple[int, ...] = (0, 2)
@@ -99,7 +99,7 @@ def faults(trial: Trial, ended: Ended) -> list[str]:
         wrong.append(f"exit status {ended.status}")
     if "Traceback" in ended.err or "Error ignored" in ended.err or "Exception ignored" in ended.err:
         wrong.append("a traceback")
-    if ended.status != 0 and not any(place in ended.err for place in trial.places):
+    if ended.status != 0 and not re.search(trial.place, ended.err):
         wrong.append("a refusal without its place")
     allowed = trial.leaves_refused if ended.status else trial.leaves
     stray = [path for path in ended.left if not re.fullmatch(allowed, path)]
