@@ -70,11 +70,6 @@ def _pattern(rng: np.random.Generator) -> tuple[str, ...]:
             return pattern
 
 
-def random_pattern_row(rng: np.random.Generator, name: str = "pattern") -> tuple[str, dict]:
-    """A fabric of any weave, widths 0.6 to 0.97 of the spacing."""
-    return random_row(rng, name, family="pattern")
-
-
 def random_narrow_row(rng: np.random.Generator, name: str = "narrow") -> tuple[str, dict]:
     """A fabric with narrow gaps: widths 0.95 to 0.999 of the spacing; one in four of any weave."""
     return random_row(rng, name, (0.95, 0.999), "pattern" if rng.random() < 0.25 else "")
@@ -111,10 +106,12 @@ def _thickness(rng: np.random.Generator, row: dict, ratio: float | None) -> dict
     return {kind: total * float(rng.uniform(0.35, 0.65))}
 
 
-def random_general_row(rng: np.random.Generator, name: str = "general", form: str = "") -> tuple[str, dict]:
+def random_general_row(
+    rng: np.random.Generator, name: str = "general", form: str = "", family: str = ""
+) -> tuple[str, dict]:
     """The same with contact chords of 0.6 to 1 of the width, offsets to 0.2 of the half chord, and
     all three lateral forms (round ones with chords from 0.93, below which few arcs fit)."""
-    family, row = random_row(rng, name)
+    family, row = random_row(rng, name, family=family)
     form = form or str(rng.choice(["lenticular", "flat", "round"]))
     row = {column: value for column, value in row.items() if column not in ("section", "lateral_height_mm")}
     row["section"] = form
@@ -133,17 +130,8 @@ def random_general_row(rng: np.random.Generator, name: str = "general", form: st
 
 
 def random_pattern_row(rng: np.random.Generator, name: str = "pattern", form: str = "") -> tuple[str, dict]:
-    """A general row woven by a random pattern of 2 to 6 wefts and warps."""
-    from fabric_cad.patterns import written
-    from fabric_cad.weaves import pattern_faults
-
-    _, row = random_general_row(rng, name, form)
-    row = {column: value for column, value in row.items() if column not in ("over", "under", "harness", "step")}
-    while True:
-        marks = rng.integers(0, 2, rng.integers(2, 7, size=2))
-        pattern = tuple("".join(map(str, weft)) for weft in marks.tolist())
-        if not pattern_faults(pattern):
-            return "pattern", row | {"pattern": written(pattern)}
+    """A general row of any weave."""
+    return random_general_row(rng, name, form, "pattern")
 
 
 def flat_gaps(draw):
@@ -154,6 +142,17 @@ def flat_gaps(draw):
         return family, row | {"float_gap": "flat"}
 
     return drawn
+
+
+DRAWS = {
+    "standard": random_row,
+    "general": random_general_row,
+    "patterns": random_pattern_row,
+    "narrow": random_narrow_row,
+    "unequal": random_unequal_row,
+    "flat-gaps": flat_gaps(random_pattern_row),
+}
+"""What draws the rows of each part of ``make stability``."""
 
 
 def skin_of(fabric, yarn):

@@ -5,9 +5,10 @@ come out consistent or be refused for a reason its numbers give; anything else f
 
 standard  contact over the whole width, widths 0.6 to 0.97 of the spacing
 general   chords, offsets and all three lateral forms
-patterns  any weave
+patterns  general fabrics of any weave
 narrow    widths 0.95 to 0.999 of the spacing
 unequal   one direction's yarns up to four times as thick as the other's
+flat-gaps as patterns, with float_gap = flat
 """
 
 from __future__ import annotations
@@ -25,15 +26,10 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
+
+from fabrics import DRAWS, table  # noqa: E402
+
 TIME_LIMIT = 180.0  # s a fabric
-DRAWS = {
-    "standard": "random_row",
-    "general": "random_general_row",
-    "patterns": "random_pattern_row",
-    "narrow": "random_narrow_row",
-    "unequal": "random_unequal_row",
-}
-"""Parts, and what draws their rows in :mod:`fabrics`."""
 
 
 @dataclass(frozen=True)
@@ -65,15 +61,13 @@ class Outcome:
 
 
 def _child(seed: int, part: str, pipe) -> None:
-    import fabrics
-
     from fabric_cad.errors import InputError
     from fabric_cad.pipeline import Stages, make_cell
 
     reached = ["table"]
     try:
-        family, row = getattr(fabrics, DRAWS[part])(np.random.default_rng(seed), f"r{seed}")
-        measured = fabrics.table(family, row)
+        family, row = DRAWS[part](np.random.default_rng(seed), f"r{seed}")
+        measured = table(family, row)
         with tempfile.TemporaryDirectory() as out:
             report = make_cell(measured, out, stages=Stages(lambda name, seconds: reached.append(name)))
         mesh = report["mesh"]
@@ -140,7 +134,7 @@ def _run(part: str, seeds: range, workers: int) -> list[Outcome]:
     with ThreadPoolExecutor(workers) as pool:
         for outcome in pool.map(lambda seed: try_fabric(seed, part), seeds):
             outcomes.append(outcome)
-            print(f"{part:9}{outcome}", flush=True)
+            print(f"{part:10}{outcome}", flush=True)
     print(f"{part}: {time.perf_counter() - start:.0f} s", flush=True)
     return outcomes
 
