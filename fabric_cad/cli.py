@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from . import __version__, terminal
-from .errors import FabricCadError, InputError, OutputError, did_you_mean
+from .errors import FabricCadError, InputError, OutputError, did_you_mean, quoted
 from .interrupts import stoppable
 from .numerals import number, whole
 from .staging import commits, staged, standing
@@ -615,7 +615,7 @@ def _clock(seconds: float) -> str:
 
 def _count(text: str) -> int:
     if not (text.isascii() and text.isdigit() and int(text)):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number above 0")
+        raise argparse.ArgumentTypeError(f"{quoted(text)} is not a whole number above 0")
     return int(text)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from .errors import InputError, Problem, read_input
+from .errors import InputError, Problem, quoted, read_input
 
 READ = (
     *("weaving", "warp", "weft", "threading", "tieup", "treadling", "liftplan"),
@@ -63,7 +63,7 @@ class Draft:
         """A number from 1 to ``most``; None where it is missing, empty or 0."""
         text = self.entry(section, key)
         if text and not re.fullmatch(rf"[0-9]{{1,{_MOST_DIGITS}}}", text):
-            raise self.wrong(f"{text!r} is not a whole number", section, key)
+            raise self.wrong(f"{quoted(text)} is not a whole number", section, key)
         number = int(text or 0)
         if number > most:
             raise self.wrong(f"{number} is not between 1 and {most}", section, key)
@@ -73,14 +73,14 @@ class Draft:
         """True or False, None where the draft does not say."""
         text = self.entry(section, key).lower()
         if text not in ("", *_TRUE, *_FALSE):
-            raise self.wrong(f"{self.entry(section, key)!r} is neither true nor false", section, key)
+            raise self.wrong(f"{quoted(self.entry(section, key))} is neither true nor false", section, key)
         return text in _TRUE if text else None
 
     def measure(self, section: str, key: str) -> float | None:
         """A number above 0, with a point or a decimal comma; None where it is missing, empty or 0."""
         text = self.entry(section, key)
         if text and not re.fullmatch(r"[0-9]{1,9}([.,][0-9]*)?|[.,][0-9]+", text):
-            raise self.wrong(f"{text!r} is not a number above 0", section, key)
+            raise self.wrong(f"{quoted(text)} is not a number above 0", section, key)
         return float(text.replace(",", ".")) or None if text else None
 
     def numbered(self, section: str) -> dict[int, frozenset[int]]:
@@ -91,7 +91,7 @@ class Draft:
                 raise self.wrong("this key is not a number", section, key)
             pieces = [piece.strip() for piece in entry.text.split(",")]
             if not all(re.fullmatch(rf"[0-9]{{0,{_MOST_DIGITS}}}", piece) for piece in pieces):
-                raise self.wrong(f"{entry.text!r} is not a list of whole numbers", section, key)
+                raise self.wrong(f"{quoted(entry.text)} is not a list of whole numbers", section, key)
             numbers = frozenset(int(piece) for piece in pieces if piece) - {0}
             if int(key) in found and found[int(key)] != numbers:
                 raise self.wrong("this key stands twice", section, key)
@@ -148,7 +148,7 @@ def _add(entries: dict[str, Entry], text: str, place: Problem) -> None:
         raise InputError(Problem("not a line of the form KEY=VALUE", place.path, place.line, place.column))
     before = entries.get(key)
     if before and before.text and value and before.text.lower() != value.lower():
-        message = f"this key stands twice, at line {before.line} as {before.text!r}"
+        message = f"this key stands twice, at line {before.line} as {quoted(before.text)}"
         raise InputError(Problem(message, place.path, place.line, f"{place.column} {key.title()}"))
     if not (before and before.text):
         entries[key] = Entry(value, place.line)

@@ -17,9 +17,13 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
-def quoted(text: str, most: int = 300) -> str:
-    """The text in quotation marks, of a long one its beginning, with control characters as escapes."""
-    return repr(text) if len(text) <= most else f"{text[:most]!r}..."
+def quoted(value: object, most: int = 300) -> str:
+    """A value as Python writes it, a text in quotation marks with control characters as escapes; of a long one
+    its beginning."""
+    if isinstance(value, str) and len(value) > most:
+        return f"{value[:most]!r}..."
+    written = repr(value)
+    return written if isinstance(value, str) or len(written) <= most else f"{written[:most]}..."
 
 
 def _short(text: str | None, most: int = 300) -> str:

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .errors import InputError, Problem, did_you_mean
+from .errors import InputError, Problem, did_you_mean, quoted
 from .identification import identify
 from .interrupts import uninterrupted
 from .scatter import propagate
@@ -61,7 +61,7 @@ def find_row(folder: str | Path, name: str) -> tuple[Family, tuple[InputError, .
             return table[name], (*unread, *others)
 
     names = [*(row for table in tables for row in table.names), *(p.row for t in tables for p in t.refused if p.row)]
-    message = f"no row is called {name!r}{did_you_mean(name, names)} ('fabric-cad list' shows them all)"
+    message = f"no row is called {quoted(name)}{did_you_mean(name, names)} ('fabric-cad list' shows them all)"
     unnamed = [problem for table in tables for problem in table.refused if not problem.row]
     perhaps = [*(problem for error in unread for problem in error.problems), *unnamed, *stray_tables(Path(folder))]
     raise InputError([Problem(message, str(folder)), *perhaps])

@@ -120,13 +120,14 @@ def cell_report(
 
 def yarn_data(table: Family, at: int) -> dict[str, float | None]:
     """Linear densities and fibre density of a row, None where not given; a balanced row's warp has its weft's."""
-    values = {name: float(table.measured[name][at]) for name in _YARN_DATA}
+    values = {name: float(table.measured[name][at]) for name in YARN_DATA}
     if table.balanced[at]:
         values["warp_linear_density_tex"] = values["weft_linear_density_tex"]
     return {name: None if np.isnan(value) else value for name, value in values.items()}
 
 
-_YARN_DATA = ("weft_linear_density_tex", "warp_linear_density_tex", "fibre_density_g_cm3")
+YARN_DATA = ("weft_linear_density_tex", "warp_linear_density_tex", "fibre_density_g_cm3")
+"""Columns that say how much fibre a yarn holds."""
 
 
 def _mesh(fabric: SolvedFabric, meshed) -> dict:

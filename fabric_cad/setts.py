@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .drafts import MOST_THREADS, Draft
+from .errors import quoted
 from .weaves import DIRECTIONS
 
 _UNITS = {
@@ -40,5 +41,5 @@ def _unit(draft: Draft, direction: str) -> float | None:
     """Millimetres of the unit of a direction's spacing, None where the draft names none."""
     name = draft.entry(direction, "units").lower()
     if name and name not in _UNITS:
-        raise draft.wrong(f"{name!r} is none of decipoints, inches and centimeters", direction, "units")
+        raise draft.wrong(f"{quoted(name)} is none of decipoints, inches and centimeters", direction, "units")
     return _UNITS.get(name)

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .drafts import MOST_THREADS, Draft, read_draft
-from .errors import InputError, Problem
+from .errors import InputError, Problem, quoted
 from .patterns import written
 from .setts import sett
 from .tables import MOST_YARNS, is_safe_name
@@ -53,7 +53,7 @@ def wif_row(path: str | Path, name: str) -> str:
     Raises :class:`InputError` for a name no table takes, and as :func:`read_wif` does.
     """
     if not is_safe_name(name):
-        raise InputError(f"name: {name!r} is no row name: letters, digits, '_' and '-' only, not '-' first")
+        raise InputError(f"name: {quoted(name)} is no row name: letters, digits, '_' and '-' only, not '-' first")
     text = io.StringIO()
     rows = csv.DictWriter(text, _ROW, restval="", lineterminator="\n")
     rows.writeheader()

@@ -99,3 +99,10 @@ def test_compaction_doubles_the_modulus_at_its_strain(tmp_path):
 def test_toml_that_its_reader_chokes_on(tmp_path, text, expected):
     with pytest.raises(InputError, match=f"simulation.toml: .*{expected}"):
         read(tmp_path, text)
+
+
+def test_a_long_value_is_cut_where_it_is_told(tmp_path):
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, f'[tension]\nstrain = "{"a" * 100_000}"\nratios = [{"-1, " * 9999}-1]\n')
+    assert len(str(refused.value)) < 1000
+    assert "strain: 'aaa" in str(refused.value) and "'... is not above 0" in str(refused.value)

@@ -87,6 +87,15 @@ def test_an_identify_study_keeps_refused_fabrics_and_finds_what_matters(here, ca
     assert Path("build/study/sensitivity.png").stat().st_size > 10_000
 
 
+def test_a_study_of_no_fabric_at_all_says_why(here, capsys):
+    Path("none.toml").write_text('base = "plain"\ndesign = "grid"\n[factors]\nweft_width_mm = [5, 6]\n')
+    assert main(["study", "none.toml"]) == 0
+    assert "none: 2 units: 0 done, 2 refused, 0 failed" in capsys.readouterr().out
+    table = read_table("build/none")
+    assert list(table["status"]) == ["refused"] * 2
+    assert all("is not below" in reason for reason in table["reason"])
+
+
 def test_a_finished_identify_study_is_left_alone(here):
     one = run_study(study(SOBOL))
     stamp = Path("build/study/table.parquet").stat().st_mtime_ns

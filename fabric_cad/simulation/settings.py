@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError, Problem, did_you_mean
+from ..errors import InputError, Problem, did_you_mean, quoted
 from ..tables import Family, read_families
 from ..toml_files import read_toml
 
@@ -234,7 +234,7 @@ class _File:
         number = isinstance(value, (int, float)) and not isinstance(value, bool)
         fits = number if kind is float else isinstance(value, kind) and not isinstance(value, bool)
         if not (fits and sound(value)):
-            self.problems.append(self.problem(table, key, f"{value!r} {complaint}", row))
+            self.problems.append(self.problem(table, key, f"{quoted(value)} {complaint}", row))
 
     def problem(self, table: str, key: str, message: str, row: str = "") -> Problem:
         place = ".".join(part for part in (table, key) if part)

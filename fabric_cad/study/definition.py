@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import InputError, Problem, did_you_mean
+from ..errors import InputError, Problem, did_you_mean, quoted
 from ..pipeline import find_row
 from ..simulation.settings import Settings, read_settings
 from ..tables import FLOAT_GAPS, MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
@@ -106,7 +106,7 @@ class _Reader:
             if name not in keys:
                 self.unknown(name, keys, prefix + name, "key")
             elif not _is(value, keys[name]):
-                self.wrong(f"{value!r} is not {_KINDS[keys[name]]}", prefix + name)
+                self.wrong(f"{quoted(value)} is not {_KINDS[keys[name]]}", prefix + name)
             else:
                 found[name] = value
         return found
@@ -117,18 +117,20 @@ class _Reader:
             if key not in self.content:
                 self.wrong("this key is missing", key)
         if not is_safe_name(self.path.stem):
-            self.wrong(f"{self.path.stem!r} cannot name a folder of results; letters, digits, '_' and '-' only", "")
+            self.wrong(
+                f"{quoted(self.path.stem)} cannot name a folder of results; letters, digits, '_' and '-' only", ""
+            )
         for key, known in (("design", DESIGNS), ("depth", DEPTHS)):
             if key in found and found[key] not in known:
                 hint = did_you_mean(found[key], known, cutoff=0.3)
-                self.wrong(f"{found.pop(key)!r} is none of {', '.join(known)}{hint}", key)
+                self.wrong(f"{quoted(found.pop(key))} is none of {', '.join(known)}{hint}", key)
         design, depth = found.get("design"), found.get("depth", "identify")
         self.check_samples(found, design)
         if "limit_seconds" in found and not found["limit_seconds"] > 0:
             self.wrong(f"{found['limit_seconds']:g} is not above 0", "limit_seconds")
         figures = found.get("figures", [])
         if not all(isinstance(each, str) for each in figures):
-            self.wrong(f"{figures!r} is not a list of texts", "figures")
+            self.wrong(f"{quoted(figures)} is not a list of texts", "figures")
             figures = []
         mesh = self.of_kind(found.get("mesh", {}), _MESH, "mesh.")
         if mesh and depth in ("identify", "cell"):
@@ -237,15 +239,15 @@ class _Reader:
     def choice(self, base: Family, column: str, value: object, key: str, shown: str) -> Values | None:
         """A factor of a weave column or of texts: a list."""
         if not isinstance(value, list) or not value:
-            self.wrong(f"{value!r} is not a list of values, as this column needs", key, shown)
+            self.wrong(f"{quoted(value)} is not a list of values, as this column needs", key, shown)
             return None
         known, before = _TEXTS.get(column), len(self.problems)
         kind = str if known or column == "pattern" else int
         for each in value:
             if not _is(each, kind):
-                self.wrong(f"{each!r} is not {_KINDS[kind]}", key, shown)
+                self.wrong(f"{quoted(each)} is not {_KINDS[kind]}", key, shown)
             elif known and each not in known:
-                self.wrong(f"{each!r} is none of {', '.join(known)}", key, shown)
+                self.wrong(f"{quoted(each)} is none of {', '.join(known)}", key, shown)
             elif not known and len(value) == 1:
                 fault = weave_fault(base.family, weave_cells(base) | {column: each})
                 if fault:
@@ -266,11 +268,13 @@ class _Reader:
         if isinstance(value, str):
             value = {"distribution": value}
         if not isinstance(value, dict):
-            self.wrong(f"{value!r} is not a list, a range like {{ from = 1, to = 2 }} or a distribution", key, shown)
+            self.wrong(
+                f"{quoted(value)} is not a list, a range like {{ from = 1, to = 2 }} or a distribution", key, shown
+            )
             return None
         kind = value.get("distribution", "uniform" if "from" in value or "to" in value else None)
         if kind not in _FACTOR_KEYS:
-            self.wrong(f"{kind!r} is none of the distributions {', '.join(_FACTOR_KEYS)}", key, shown)
+            self.wrong(f"{quoted(kind)} is none of the distributions {', '.join(_FACTOR_KEYS)}", key, shown)
             return None
         given = {name: each for name, each in value.items() if name != "distribution"}
         for name, each in given.items():
@@ -279,7 +283,7 @@ class _Reader:
                 hint = did_you_mean(name, _FACTOR_KEYS[kind], cutoff=0.3) or those
                 self.wrong(f"{name}: unknown key{hint}", f"{key}.{name}", shown)
             elif not _is(each, int if name == "steps" else float):
-                self.wrong(f"{name}: {each!r} is not {_KINDS[int if name == 'steps' else float]}", key, shown)
+                self.wrong(f"{name}: {quoted(each)} is not {_KINDS[int if name == 'steps' else float]}", key, shown)
         if len(self.problems) > before:
             return None
         factor = self.uniform(base, column, given, key, shown) if kind == "uniform" else None
@@ -292,7 +296,7 @@ class _Reader:
     def check_bound(self, base: Family, column: str, value: object, key: str, shown: str) -> None:
         """What the column's bounds say of one value; the rest of its row is the unit's own business."""
         if not _is(value, float):
-            self.wrong(f"{value!r} is not a number", key, shown)
+            self.wrong(f"{quoted(value)} is not a number", key, shown)
         elif value < 0 or (value == 0 and "_offset_" not in column):
             self.wrong(f"{value:g} is {'below' if '_offset_' in column else 'not above'} 0", key, shown)
 

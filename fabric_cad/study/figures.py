@@ -9,7 +9,7 @@ import numpy as np
 from ..closing import CLOSING
 from ..identification import Identified
 from ..plausibility import implausible
-from ..report import yarn_data
+from ..report import YARN_DATA
 from ..solved import point_columns
 from ..tables import Family
 from ..volumes import yarn_volumes
@@ -164,6 +164,6 @@ def _volumes(table: Family, found: Identified, weaves, wefts, warps) -> dict[str
 
 def _yarn_data(table: Family, rows: np.ndarray) -> dict[str, np.ndarray]:
     """:func:`fabric_cad.report.yarn_data` of many rows, NaN where not given."""
-    found = {name: table.measured[name][rows] for name in yarn_data(table, 0)}
+    found = {name: table.measured[name][rows] for name in YARN_DATA}
     weft, warp = (found[f"{d}_linear_density_tex"] for d in DIRECTIONS)
     return found | {"warp_linear_density_tex": np.where(table.balanced[rows], weft, warp)}

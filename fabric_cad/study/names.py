@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..closing import CLOSING
-from ..errors import did_you_mean
+from ..errors import did_you_mean, quoted
 from ..simulation.settings import Settings
 from ..solved import point_columns
 from ..weaves import DIRECTIONS
@@ -91,7 +91,7 @@ def figure_fault(name: str, depth: str, settings: Settings | None = None) -> str
         return None
     deeper = next((more for more in ("cell", "mesh") if name in figure_names(more)), None)
     if deeper or name.startswith("tension.k=") and depth != "tension":
-        return f"{name!r} is a figure of depth {deeper or 'tension'}, this study is of depth {depth}"
+        return f"{quoted(name)} is a figure of depth {deeper or 'tension'}, this study is of depth {depth}"
 
     hint = did_you_mean(name, known, 0.5) or f"; there are {', '.join(known[-12:])} and others, as in table.csv"
-    return f"{name!r} is no figure of depth {depth}{hint}"
+    return f"{quoted(name)} is no figure of depth {depth}{hint}"

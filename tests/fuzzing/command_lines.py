@@ -96,8 +96,6 @@ AROUND: tuple[tuple[tuple[str, ...], Callable[[], None], tuple[int, ...]], ...] 
     (("solve",), _folder_deleted, (1, 2)),
     (("solve",), _closed, (0, 1, 2)),
 )
-NO_SOLVER = 1
-"""Exit status where a solver is not there: the machine's fault, not the input's."""
 
 
 def trial(seed: int) -> Trial:
@@ -106,7 +104,7 @@ def trial(seed: int) -> Trial:
     files |= {"a_file": b"[WIF]\nVersion=1.1\n", "an empty folder": None}
     if seed < len(WRONG):
         arguments, named = WRONG[seed]
-        statuses = (0, 2, NO_SOLVER) if "--ccx" in arguments or "a_file" in "".join(arguments) else (0, 2)
+        statuses = (0, 1, 2) if {"--ccx", "--out"} & set(arguments) else (0, 2)  # 1: no solver, no place for results
         place = "|".join(map(re.escape, named))
         return Trial(_shown(arguments), arguments, files, place, LEAVES, statuses=statuses, fresh=seed % 10 == 5)
     if seed < len(WRONG) + len(AROUND):
