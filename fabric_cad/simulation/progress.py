@@ -20,8 +20,8 @@ class CaseProgress:
     """Where a case is: ``state`` of ``states`` (0: not begun) in its ``increment``, ``load`` the share of it reached.
 
     ``seconds`` since the solver was first started; ``expected`` those of the whole case by the measured
-    rate, within a factor of :data:`SECONDS_SPREAD`; ``left`` those that the rest takes at this run's own rate, None
-    before its first state is reached.
+    rate, within a factor of :data:`SECONDS_SPREAD`; ``left`` those that the rest takes at this run's own rate since
+    its first state, which takes longer than others, None before there is one.
     """
 
     state: int
@@ -50,6 +50,7 @@ class CaseWatch:
     ) -> None:
         self.states, self.hexahedra, self.listen, self.clock = tuple(states), hexahedra, listen, clock
         self.start = clock()
+        self.first: tuple[float, float] | None = None  # seconds and states when the first state was reached
         self.tell(0, 0, 0.0)
 
     def job(self, number: int) -> Callable[[Progress], None] | None:
@@ -65,7 +66,13 @@ class CaseWatch:
             return
         states, seconds = sum(self.states), self.clock() - self.start
         reached = max(state - 1, 0) + load
-        left = seconds / reached * (states - reached) if reached >= 1 else None
+        if self.first is None and reached >= 1:
+            self.first = seconds, reached
+
+        left = None
+        if self.first is not None and reached - self.first[1] >= 0.5:
+            pace = (seconds - self.first[0]) / (reached - self.first[1])
+            left = pace * (states - reached)
         expected = expected_seconds(states, self.hexahedra)
         self.listen(CaseProgress(state, states, increment, load, self.hexahedra, seconds, expected, left))
 
