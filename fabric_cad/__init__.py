@@ -41,14 +41,14 @@ _FROM = {
     "Solver": "simulation.job",
     "read_study": "study",
     "run_study": "study",
-    "FabricCadError": "errors",
-    "InputError": "errors",
-    "ArgumentError": "errors",
-    "UnknownRowError": "errors",
-    "MissingPackageError": "errors",
-    "BuildError": "errors",
-    "OutputError": "errors",
-    "SolverError": "errors",
+    "FabricCadError": "support.errors",
+    "InputError": "support.errors",
+    "ArgumentError": "support.errors",
+    "UnknownRowError": "support.errors",
+    "MissingPackageError": "support.errors",
+    "BuildError": "support.errors",
+    "OutputError": "support.errors",
+    "SolverError": "support.errors",
 }
 __all__ = ["__version__", *_FROM]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .errors import Problem
+from .support.errors import Problem
 from .tables import MEASURED, Family
 from .weaves import DIRECTIONS
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from numbers import Integral, Real
 
 from .columns import MEASURED, OTHER_UNITS, STD, TEXTS, WEAVE_COLUMNS
-from .errors import ArgumentError, InputError, Place, Problem, did_you_mean
 from .records import Record
 from .row_rules import RowReader
+from .support.errors import ArgumentError, InputError, Place, Problem, did_you_mean
 from .tables import Family, family_table
 from .weaves import FAMILIES
 

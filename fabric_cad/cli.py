@@ -11,10 +11,10 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from . import __version__, terminal
-from .errors import FabricCadError, InputError, OutputError, did_you_mean, quoted
-from .interrupts import stoppable
-from .numerals import number, whole
-from .staging import commits, staged, standing
+from .support.errors import FabricCadError, InputError, OutputError, did_you_mean, quoted
+from .support.interrupts import stoppable
+from .support.numerals import number, whole
+from .support.staging import commits, staged, standing
 from .terminal import complain, say
 
 _DESCRIPTION = """\
@@ -521,12 +521,12 @@ def _shear(settings) -> int:
 
 def _simulate(settings, name: str, kind: str, make) -> None:
     """Run a case of one row, or write its deck alone."""
-    from .cores import cores
     from .pipeline import Stages
     from .simulation.job import Solver
     from .simulation.report import summary
     from .simulation.run import write_case
     from .simulation.solver import find_solver
+    from .support.cores import cores
 
     row = _row(settings, name)
     progress = _Progress(settings.quiet)

@@ -28,8 +28,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .errors import BuildError
 from .solved import Direction, SolvedFabric
+from .support.errors import BuildError
 from .sweeps import control_planes, control_sections, skin, trajectory
 from .weaves import Yarn, yarns_of
 

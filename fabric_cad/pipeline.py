@@ -10,12 +10,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .errors import InputError, Problem, did_you_mean, quoted
 from .identification import identify
-from .interrupts import uninterrupted
 from .scatter import propagate
 from .solved import SolvedFabric, SolvedTable, read_solved
-from .staging import staged
+from .support.errors import InputError, Problem, did_you_mean, quoted
+from .support.interrupts import uninterrupted
+from .support.staging import staged
 from .sweeps import contact_patches
 from .table_files import stray_tables
 from .tables import Family, expect_row, read_families

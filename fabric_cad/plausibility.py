@@ -26,7 +26,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from .errors import Problem
+from .support.errors import Problem
 from .tables import Family
 from .weaves import DIRECTIONS
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .errors import BuildError
 from .meshing.mesh import Mesh
 from .plausibility import LEAST_JACOBIAN
 from .solved import Direction, SolvedFabric, point_columns
+from .support.errors import BuildError
 from .tables import Family
 from .weaves import Weave
 

@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .errors import InputError, Problem, expect
 from .identification import identify
 from .solved import SolvedTable
+from .support.errors import InputError, Problem, expect
 from .tables import Family
 from .weaves import DIRECTIONS
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .drafts import MOST_THREADS, Draft
-from .errors import quoted
+from .support.errors import quoted
 from .weaves import DIRECTIONS
 
 _UNITS = {

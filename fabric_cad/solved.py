@@ -25,10 +25,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .columns import FLOAT_GAPS
-from .errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
-from .numerals import number as number_of
-from .numerals import whole
 from .sections import KINDS, ContactSide, Frame, FreeSide
+from .support.errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
+from .support.numerals import number as number_of
+from .support.numerals import whole
 from .weaves import Weave
 
 PLATEAUX = ("low", "high")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from pathlib import Path
 
-from .errors import InputError, Problem
+from .support.errors import InputError, Problem
 from .weaves import FAMILIES
 
 WORKBOOKS = (".xlsx", ".ods")

@@ -2,7 +2,7 @@
 
 A table is a CSV in any dialect a spreadsheet writes (:mod:`~fabric_cad.records`) or a workbook
 (:mod:`~fabric_cad.workbooks`). It is read whole: everything that is wrong in it is listed in one
-:class:`~fabric_cad.errors.InputError`.
+:class:`~fabric_cad.support.errors.InputError`.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from .columns import (
     WEAVE_COLUMNS,
     is_safe_name,
 )
-from .errors import ArgumentError, InputError, Place, Problem, UnknownRowError, did_you_mean, expect
 from .records import Records, read_csv
 from .row_rules import RowReader, header_problems
+from .support.errors import ArgumentError, InputError, Place, Problem, UnknownRowError, did_you_mean, expect
 from .table_files import NO_TABLE, WORKBOOKS, family_of, stray_tables, table_files
 from .weaves import Weave, weave_of
 

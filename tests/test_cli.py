@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from fabric_cad import staging
 from fabric_cad.cli import main, shipped_families
-from fabric_cad.errors import BuildError, OutputError
+from fabric_cad.support import staging
+from fabric_cad.support.errors import BuildError, OutputError
 
 HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp"
 

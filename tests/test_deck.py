@@ -19,8 +19,8 @@ from fabric_cad.decks.keywords import (
     write_keywords,
 )
 from fabric_cad.decks.model import Load, Touch, model_keywords
-from fabric_cad.errors import BuildError
 from fabric_cad.meshing.mesh import Mesh
+from fabric_cad.support.errors import BuildError
 
 GOLDEN = Path(__file__).parent / "golden"
 

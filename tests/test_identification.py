@@ -9,9 +9,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fabric_cad.closing import CLOSING
-from fabric_cad.errors import InputError
 from fabric_cad.identification import identify
 from fabric_cad.lengths import excess_length
+from fabric_cad.support.errors import InputError
 
 seeds = st.integers(0, 2**32 - 1)
 

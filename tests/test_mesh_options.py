@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from fabrics import TWILL32, random_general_row, random_row, table
 
-from fabric_cad import memory
 from fabric_cad.cli import main
-from fabric_cad.errors import BuildError, InputError
 from fabric_cad.identification import identify_rows
 from fabric_cad.meshing import mesher
 from fabric_cad.meshing.count import hexahedra, needed_memory
 from fabric_cad.meshing.options import MOST, MeshOptions, mesh_options
 from fabric_cad.meshing.plan import plan_yarn
 from fabric_cad.solved import SolvedFabric
+from fabric_cad.support import memory
+from fabric_cad.support.errors import BuildError, InputError
 from fabric_cad.weaves import yarns_of
 
 

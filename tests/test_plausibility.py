@@ -9,7 +9,6 @@ import pytest
 from fabrics import TWILL32, UNBALANCED, table
 
 from fabric_cad.cli import main
-from fabric_cad.errors import BuildError, InputError
 from fabric_cad.identification import identify, identify_rows
 from fabric_cad.plausibility import (
     DENSEST,
@@ -21,6 +20,7 @@ from fabric_cad.plausibility import (
     implausible,
 )
 from fabric_cad.report import check_report
+from fabric_cad.support.errors import BuildError, InputError
 
 HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp,weft_thickness_mm"
 

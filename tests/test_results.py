@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from jobs import BLOCK, LENGTH, OUTPUT, POISSON, STIFFNESS, TWO_BLOCKS, YOUNG, needs_ccx, pressed, pulled, step
 
-from fabric_cad.errors import InputError
 from fabric_cad.simulation.results import CONTACT_FORCE, read_dat, read_frd, read_sta
 from fabric_cad.simulation.solver import find_solver, run_solver
+from fabric_cad.support.errors import InputError
 
 NODAL = 5e-5  # ccx's own 4e-5 in bringing a uniform stress to the nodes, and six digits
 

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 import fabric_cad
 from fabric_cad.cli import main, shipped_families
 from fabric_cad.closing import CLOSING
-from fabric_cad.errors import InputError
 from fabric_cad.identification import identify
 from fabric_cad.lengths import _excess_derivative
 from fabric_cad.scatter import doubts, propagate
+from fabric_cad.support.errors import InputError
 from fabric_cad.tables import MEASURED, read_families
 from fabric_cad.validation import plus_minus
 

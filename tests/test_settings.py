@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from fabric_cad.errors import InputError
 from fabric_cad.simulation.settings import read_settings, shipped_settings
+from fabric_cad.support.errors import InputError
 
 
 def read(tmp_path, text, row="plain"):

@@ -15,11 +15,11 @@ from pathlib import Path
 import pytest
 from jobs import BLOCK, endless, needs_ccx, pulled, pushed, step
 
-from fabric_cad.errors import FabricCadError, InputError, SolverError
 from fabric_cad.simulation import solver as solver_module
 from fabric_cad.simulation.results import read_dat, read_frd
 from fabric_cad.simulation.solver import find_solver, run_solver, step_periods
-from fabric_cad.staging import staged
+from fabric_cad.support.errors import FabricCadError, InputError, SolverError
+from fabric_cad.support.staging import staged
 
 ROOT = Path(__file__).parents[1]
 
@@ -127,7 +127,7 @@ def solving(tmp_path, body, prefix=""):
     code = f"""
 import os, sys; from pathlib import Path
 from fabric_cad.simulation.solver import run_solver
-from fabric_cad.staging import staged
+from fabric_cad.support.staging import staged
 with staged(Path({str(tmp_path / "build" / "row")!r})) as folder:
     (folder / "job.inp").write_text("*STEP")
     {prefix}run_solver(folder / "job.inp", Path({str(solver)!r}))
@@ -150,7 +150,7 @@ def test_an_interrupt_leaves_no_child(tmp_path):
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_polite_end_of_the_command_leaves_no_child_and_no_folder(tmp_path, number):
     """The command turns these signals into exceptions."""
-    stoppable = "import fabric_cad.interrupts as i; s = i.stoppable(); s.__enter__(); "
+    stoppable = "import fabric_cad.support.interrupts as i; s = i.stoppable(); s.__enter__(); "
     python, child = solving(tmp_path, "sleep 60 & echo $! > started\nmv started child\nwait", stoppable)
     python.send_signal(number)
     _, errors = python.communicate(timeout=10)

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from fabric_cad import folders, locks, staging, working
-from fabric_cad.errors import OutputError
-from fabric_cad.interrupts import Stopped, stoppable, uninterrupted
+from fabric_cad.support.errors import OutputError
+from fabric_cad.support.interrupts import Stopped, stoppable, uninterrupted
 
 ROOT = Path(__file__).parents[1]
 posix = pytest.mark.skipif(os.name != "posix", reason="POSIX signals and links")

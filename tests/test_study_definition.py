@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from fabric_cad.cli import main, shipped_families
-from fabric_cad.errors import InputError
 from fabric_cad.study.definition import read_study
 from fabric_cad.study.factors import Normal, Uniform, Values
+from fabric_cad.support.errors import InputError
 
 
 @pytest.fixture

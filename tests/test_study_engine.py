@@ -11,8 +11,8 @@ import psutil
 import pytest
 import workloads
 
-from fabric_cad.errors import FabricCadError, InputError
 from fabric_cad.study.engine import run_tasks
+from fabric_cad.support.errors import FabricCadError, InputError
 
 
 def test_a_dead_or_hanging_worker_costs_its_own_unit(tmp_path):

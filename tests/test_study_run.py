@@ -16,7 +16,6 @@ import pytest
 from jobs import needs_ccx
 
 from fabric_cad.cli import main
-from fabric_cad.errors import OutputError
 from fabric_cad.identification import identify_rows
 from fabric_cad.pipeline import find_row, make_cell
 from fabric_cad.study import read_study, run_study
@@ -25,6 +24,7 @@ from fabric_cad.study.names import figure_names
 from fabric_cad.study.sensitivity import read_sensitivities
 from fabric_cad.study.store import held
 from fabric_cad.study.table import read_table
+from fabric_cad.support.errors import OutputError
 
 SOBOL = """
 base = "plain_measured"

@@ -4,10 +4,10 @@ import json
 
 import pytest
 
-from fabric_cad.errors import OutputError
 from fabric_cad.study.lines import read_line, written_line
 from fabric_cad.study.store import Store
 from fabric_cad.study.units import Outcome
+from fabric_cad.support.errors import OutputError
 
 DONE = Outcome("done", "", {"a.b": 0.1, "text": "weft", "none": None, "odd": float("inf")}, {"total": 1.25})
 LINE = written_line("k1", DONE).encode()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fabric_cad.errors import InputError
+from fabric_cad.support.errors import InputError
 from fabric_cad.tables import MEASURED, read_families, read_family
 
 HEADER = (

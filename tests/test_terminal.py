@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from test_cli import HEADER, _report
 
-from fabric_cad import staging
 from fabric_cad.cli import main
-from fabric_cad.errors import BuildError, InputError, OutputError
+from fabric_cad.support import staging
+from fabric_cad.support.errors import BuildError, InputError, OutputError
 
 FABRIC_CAD = f"'{sys.executable}' -m fabric_cad"
 posix = pytest.mark.skipif(os.name != "posix", reason="a POSIX shell's redirections")

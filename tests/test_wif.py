@@ -3,7 +3,7 @@
 import pytest
 
 from fabric_cad.cli import main
-from fabric_cad.errors import InputError
+from fabric_cad.support.errors import InputError
 from fabric_cad.tables import read_family
 from fabric_cad.wif import read_wif, wif_row
 

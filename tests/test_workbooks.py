@@ -14,8 +14,8 @@ from odf.table import CoveredTableCell, Table, TableCell, TableRow
 from odf.text import P
 
 from fabric_cad.cli import main
-from fabric_cad.errors import InputError
 from fabric_cad.identification import identify
+from fabric_cad.support.errors import InputError
 from fabric_cad.tables import MEASURED, read_families, read_family
 from fabric_cad.weaves import FAMILIES
 from fabric_cad.workbook_scan import LARGEST

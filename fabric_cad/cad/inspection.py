@@ -20,7 +20,7 @@ from OCP.Geom import Geom_BSplineSurface
 from scipy.interpolate import BSpline
 from scipy.optimize import minimize
 
-from ..errors import BuildError
+from ..support.errors import BuildError
 
 TOUCHING = 1e-9
 """Distance (mm) up to which two faces count as in contact."""

@@ -10,8 +10,8 @@ from OCP.gp import gp_Pnt
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
 
-from ..errors import BuildError
 from ..sections import Section
+from ..support.errors import BuildError
 from ..sweeps import Patch, Skin, Trajectory, skin
 
 _SEWING_TOLERANCE = 1e-7  # mm, OCCT's confusion; the edges sewn agree to rounding

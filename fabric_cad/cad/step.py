@@ -25,7 +25,7 @@ from OCP.XSControl import XSControl_WorkSession
 
 from .. import __version__
 from ..colours import COLOURS
-from ..errors import BuildError
+from ..support.errors import BuildError
 from ..weaves import direction_of
 
 _NO_TIME = "1970-01-01T00:00:00"

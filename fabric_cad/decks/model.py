@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BuildError
 from ..meshing.mesh import Mesh
+from ..support.errors import BuildError
 from ..weaves import DIRECTIONS, direction_of
 from .cell import ORIENTATION, cell_keywords
 from .faces import touching_faces

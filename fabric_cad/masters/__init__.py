@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from ..errors import expect
 from ..solved import SolvedFabric
+from ..support.errors import expect
 
 
 def build_cell(fabric: SolvedFabric):
     """The :class:`~fabric_cad.cad.Cell` of a solved fabric, built by the master of its family.
 
-    Raises :class:`~fabric_cad.errors.BuildError` where OCCT makes no valid solid of a yarn.
+    Raises :class:`~fabric_cad.support.errors.BuildError` where OCCT makes no valid solid of a yarn.
     """
     expect(fabric, SolvedFabric, "fabric", " (identify(table)['name'] gives one)")
     return import_module(f"{__name__}.{fabric.family}").cell(fabric)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import MissingPackageError
+from ..support.errors import MissingPackageError
 from .mesh import Mesh
 
 

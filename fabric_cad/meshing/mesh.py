@@ -57,7 +57,7 @@ class Mesh:
 
         ``cell_sets`` hold every yarn's hexahedra and every surface's quadrilaterals under their names; cell
         data ``yarn`` (from 1) and ``fibre_axis`` (0, 0, 0 on quadrilaterals). Raises
-        :class:`~fabric_cad.errors.MissingPackageError` where meshio is not installed.
+        :class:`~fabric_cad.support.errors.MissingPackageError` where meshio is not installed.
         """
         from .exchange import meshio_mesh
 

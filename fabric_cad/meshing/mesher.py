@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import BuildError, expect
-from ..interrupts import uninterrupted
 from ..solved import SolvedFabric
+from ..support.errors import BuildError, expect
+from ..support.interrupts import uninterrupted
 from ..weaves import yarns_of
 from .count import hexahedra
 from .mesh import Mesh

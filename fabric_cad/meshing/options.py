@@ -8,9 +8,9 @@ from math import ceil, isfinite
 from numbers import Integral
 from types import MappingProxyType
 
-from ..errors import InputError, Problem
-from ..memory import available_memory
 from ..solved import SolvedFabric
+from ..support.errors import InputError, Problem
+from ..support.memory import available_memory
 from .count import hexahedra, needed_memory
 
 MOST = 100_000

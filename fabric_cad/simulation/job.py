@@ -11,11 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..cores import cores
 from ..decks.faces import area_vectors, face_quads, touching_faces
 from ..decks.keywords import EngineeringConstants, write_keywords
 from ..decks.model import Load, Touch, model_keywords
 from ..meshing.mesh import Mesh
+from ..support.cores import cores
 from ..weaves import DIRECTIONS, direction_of
 from .energy import cell_energy
 from .penetration import penetration

@@ -28,7 +28,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError, Problem
+from ..support.errors import InputError, Problem
 
 _WIDTH = 12  # of a number in a row of .frd
 _LEAD = 13  # " -1" and the node number before it

@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from ..decks.model import Load
-from ..errors import SolverError
 from ..pipeline import Stages
-from ..staging import staged
+from ..support.errors import SolverError
+from ..support.staging import staged
 from ..tables import Family
 from ..traces import renew_digests, trace, write_traced
 from .cell import loaded_cell

@@ -22,8 +22,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import InputError, Problem, SolverError
-from ..working import lock_of
+from ..support.errors import InputError, Problem, SolverError
+from ..support.working import lock_of
 from .results import Increment, read_sta
 
 _OUTPUTS = (".log", ".sta", ".cvg", ".dat", ".frd", ".12d")
@@ -114,7 +114,7 @@ def run_solver(
     the limit, when ``stop`` is set (the way to end runs in threads of a pool, which Ctrl-C does not
     reach), or on any exception (Ctrl-C, one raised by ``listen``), the process and its children are
     killed; an exception goes on to the caller. SIGTERM ends Python without one, unless the caller makes
-    it one (:func:`fabric_cad.interrupts.stoppable`). On Linux ccx ends also where Python is killed outright,
+    it one (:func:`fabric_cad.support.interrupts.stoppable`). On Linux ccx ends also where Python is killed outright,
     or the thread ends that called this; elsewhere it then runs on, and holds the lock of the working folder
     its deck is in. The steps are looked for in the deck itself, not in files it includes.
     Raises InputError for a deck that is not there or not an .inp, SolverError where ccx cannot be started.

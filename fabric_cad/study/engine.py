@@ -12,8 +12,8 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-from ..cores import cores
-from ..errors import FabricCadError, InputError
+from ..support.cores import cores
+from ..support.errors import FabricCadError, InputError
 from .processes import LocalWorkers
 
 _MISSING = "a study on a Dask cluster needs dask.distributed: pip install 'fabric-cad[study]'"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ..closing import CLOSING
-from ..errors import did_you_mean, quoted
 from ..simulation.settings import Settings
 from ..solved import point_columns
+from ..support.errors import did_you_mean, quoted
 from ..weaves import DIRECTIONS
 
 _WEAVE = ("over", "under", "step", "wefts", "warps")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..errors import OutputError
+from ..support.errors import OutputError
 from .table import NAMES
 
 FILES = (*NAMES, "sensitivity.csv", "sensitivity.png", "sensitivity.pdf", "costs.csv")

@@ -9,8 +9,8 @@ from math import gcd
 import numpy as np
 
 from ..bounds import out_of_bounds
-from ..errors import Problem
 from ..patterns import read_pattern, size_fault, written
+from ..support.errors import Problem
 from ..tables import MEASURED, MOST_YARNS, OTHER_UNITS, WEAVE_COLUMNS, Family
 from ..weaves import Weave, pattern_faults, weave_of
 from .design import Samples

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import FabricCadError, InputError, Problem
 from ..identification import identify_rows
-from ..staging import staged
+from ..support.errors import FabricCadError, InputError, Problem
+from ..support.staging import staged
 from ..tables import Family
 from .definition import Study
 from .design import DESIGNS, Samples

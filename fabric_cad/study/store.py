@@ -15,8 +15,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from .. import __version__, locks
-from ..errors import OutputError
+from .. import __version__
+from ..support import locks
+from ..support.errors import OutputError
 from ..tables import Family
 from .lines import read_line, written_line
 from .units import Outcome, Work

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import FabricCadError
+from ..support.errors import FabricCadError
 
 _KEY = b"fabric_cad.study"
 NAMES = ("table.parquet", "table.csv")

@@ -14,13 +14,13 @@ from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
 
-from ..errors import FabricCadError, InputError, SolverError
 from ..pipeline import Stages, checked_report, make_mesh, make_step, write_report
 from ..simulation.settings import Settings
-from ..staging import output_errors, staged
+from ..support.errors import FabricCadError, InputError, SolverError
+from ..support.staging import output_errors, staged
+from ..support.working import scratch_folder
 from ..tables import Family
 from ..traces import trace
-from ..working import scratch_folder
 from .figures import flat
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..interrupts import uninterrupted
 from ..meshing.mesh import Mesh
 from ..meshing.quality import Quality
+from ..support.interrupts import uninterrupted
 from ..weaves import DIRECTIONS, direction_of
 from .library import pyvista
 
