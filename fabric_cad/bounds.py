@@ -10,7 +10,7 @@ import numpy as np
 
 from .support.errors import Problem
 from .tables import MEASURED, Family
-from .weaves import DIRECTIONS
+from .weave.weaves import DIRECTIONS
 
 
 def out_of_bounds(table: Family) -> dict[int, Problem]:

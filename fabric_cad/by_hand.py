@@ -11,7 +11,7 @@ from .records import Record
 from .row_rules import RowReader
 from .support.errors import ArgumentError, InputError, Place, Problem, did_you_mean
 from .tables import Family, family_table
-from .weaves import FAMILIES
+from .weave.weaves import FAMILIES
 
 
 def measured_fabric(family: str, **columns: object) -> Family:

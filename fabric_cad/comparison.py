@@ -31,7 +31,7 @@ import numpy as np
 from .solved import Direction, SolvedFabric
 from .support.errors import BuildError
 from .sweeps import control_planes, control_sections, skin, trajectory
-from .weaves import Yarn, yarns_of
+from .weave.weaves import Yarn, yarns_of
 
 POINTS = 192
 """Points of the grid along either side of a crossing: volumes are then right to 0.1 %, the

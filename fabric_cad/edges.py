@@ -14,7 +14,7 @@ from .sections import Section
 from .solved import SolvedFabric
 from .splines import Spline
 from .sweeps import control_planes, control_sections, trajectory
-from .weaves import yarns_of
+from .weave.weaves import yarns_of
 
 _SAMPLES = 257
 

@@ -20,7 +20,7 @@ from .sections import free_parabola, lateral_arc, round_between, round_free_side
 from .solved import PLATEAUX, SolvedTable, point_columns
 from .support.errors import InputError, Problem, expect
 from .tables import Family
-from .weaves import DIRECTIONS
+from .weave.weaves import DIRECTIONS
 
 CONTACT_SIDE = {"high": "bottom", "low": "top"}
 """The side of a yarn that touches at each plateau."""

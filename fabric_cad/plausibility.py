@@ -28,7 +28,7 @@ import numpy as np
 
 from .support.errors import Problem
 from .tables import Family
-from .weaves import DIRECTIONS
+from .weave.weaves import DIRECTIONS
 
 DENSEST = pi / sqrt(12)
 """Largest share of a section that parallel round fibres fill."""

@@ -20,7 +20,7 @@ from .simulation.penetration import valid_until
 from .solved import SolvedFabric, point_columns
 from .splines import Spline
 from .sweeps import control_planes, control_sections, trajectory
-from .weaves import DIRECTIONS, Yarn, direction_of, yarns_of
+from .weave.weaves import DIRECTIONS, Yarn, direction_of, yarns_of
 
 _POINTS = 41
 _ACROSS = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 301)) / 2  # of a width, closer towards the edges

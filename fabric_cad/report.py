@@ -12,7 +12,7 @@ from .plausibility import LEAST_JACOBIAN
 from .solved import Direction, SolvedFabric, point_columns
 from .support.errors import BuildError
 from .tables import Family
-from .weaves import Weave
+from .weave.weaves import Weave
 
 COINCIDENT = 1e-9
 """Distance (mm) up to which two nodes, or two faces, count as at the same place."""

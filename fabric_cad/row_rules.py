@@ -20,11 +20,11 @@ from .columns import (
     WEAVE_COLUMNS,
     is_safe_name,
 )
-from .patterns import read_pattern, size_fault
 from .records import Record
 from .support.errors import Place, Problem, did_you_mean, quoted
 from .support.numerals import number, whole
-from .weaves import DIRECTIONS, pattern_faults
+from .weave.patterns import read_pattern, size_fault
+from .weave.weaves import DIRECTIONS, pattern_faults
 
 FREE_TEXTS = ("source", "notes")
 

@@ -20,7 +20,7 @@ from .identification import identify
 from .solved import SolvedTable
 from .support.errors import InputError, Problem, expect
 from .tables import Family
-from .weaves import DIRECTIONS
+from .weave.weaves import DIRECTIONS
 
 _STEP = 2.0**-17
 """Step of the differences as a share of the value: the cube root of the rounding, where a central

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .drafts import MOST_THREADS, Draft
 from .support.errors import quoted
-from .weaves import DIRECTIONS
+from .weave.weaves import DIRECTIONS
 
 _UNITS = {
     **dict.fromkeys(("decipoints", "decipoint"), 25.4 / 720),

@@ -29,7 +29,7 @@ from .sections import KINDS, ContactSide, Frame, FreeSide
 from .support.errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
 from .support.numerals import number as number_of
 from .support.numerals import whole
-from .weaves import Weave
+from .weave.weaves import Weave
 
 PLATEAUX = ("low", "high")
 

@@ -25,7 +25,7 @@ import numpy as np
 from .sections import KINDS, Section, contact_section, free_section
 from .solved import SolvedFabric
 from .splines import Quadratic, Spline, as_cubic, line, quadratic_spline
-from .weaves import Yarn
+from .weave.weaves import Yarn
 
 
 @dataclass(frozen=True)

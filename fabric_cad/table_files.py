@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from .support.errors import InputError, Problem
-from .weaves import FAMILIES
+from .weave.weaves import FAMILIES
 
 WORKBOOKS = (".xlsx", ".ods")
 SUFFIXES = (".csv", *WORKBOOKS)

@@ -29,7 +29,7 @@ from .records import Records, read_csv
 from .row_rules import RowReader, header_problems
 from .support.errors import ArgumentError, InputError, Place, Problem, UnknownRowError, did_you_mean, expect
 from .table_files import NO_TABLE, WORKBOOKS, family_of, stray_tables, table_files
-from .weaves import Weave, weave_of
+from .weave.weaves import Weave, weave_of
 
 __all__ = [
     "FLOAT_GAPS",

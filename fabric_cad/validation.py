@@ -7,7 +7,7 @@ import math
 from .scatter import Spread
 from .solved import SolvedTable
 from .tables import Family
-from .weaves import DIRECTIONS
+from .weave.weaves import DIRECTIONS
 
 _SHOWN = (  # label, quantity of a direction, factor
     ("crimp %", "crimp", 100.0),

@@ -19,7 +19,7 @@ import numpy as np
 
 from .sections import KINDS
 from .solved import PLATEAUX
-from .weaves import DIRECTIONS, Weave, yarns_of
+from .weave.weaves import DIRECTIONS, Weave, yarns_of
 
 
 @lru_cache(maxsize=1024)

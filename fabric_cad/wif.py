@@ -18,11 +18,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .drafts import MOST_THREADS, Draft, read_draft
-from .patterns import written
 from .setts import sett
 from .support.errors import InputError, Problem, quoted
 from .tables import MOST_YARNS, is_safe_name
-from .weaves import pattern_faults
+from .weave.patterns import written
+from .weave.weaves import pattern_faults
 
 _ROW = (
     "name",

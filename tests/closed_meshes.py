@@ -18,7 +18,7 @@ from fabric_cad.meshing.options import mesh_options
 from fabric_cad.meshing.plan import plan_yarns
 from fabric_cad.meshing.quality import Quality, hexahedra_quality
 from fabric_cad.support.errors import InputError
-from fabric_cad.weaves import yarns_of
+from fabric_cad.weave.weaves import yarns_of
 
 
 def outline_of(fabric, plan):

@@ -25,7 +25,7 @@ from fabric_cad.support.staging import staged
 from fabric_cad.sweeps import contact_patches, control_planes, control_sections, skin, trajectory
 from fabric_cad.tables import read_families
 from fabric_cad.traces import renew_digests
-from fabric_cad.weaves import yarns_of
+from fabric_cad.weave.weaves import yarns_of
 
 ROWS = [name for table in read_families(shipped_families()).values() for name in table.names]
 

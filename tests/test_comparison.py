@@ -34,7 +34,7 @@ from fabric_cad.comparison import (
 from fabric_cad.identification import identify
 from fabric_cad.plots import plot_gap_maps, plot_model_cuts
 from fabric_cad.support.errors import BuildError, InputError
-from fabric_cad.weaves import yarns_of
+from fabric_cad.weave.weaves import yarns_of
 
 seeds = st.integers(0, 2**32 - 1)
 CRITICISED, PRESENT = MODELS[:-1], MODELS[-1]

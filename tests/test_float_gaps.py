@@ -28,7 +28,7 @@ from fabric_cad.support.errors import InputError
 from fabric_cad.sweeps import control_planes, control_sections, trajectory
 from fabric_cad.tables import FLOAT_GAPS
 from fabric_cad.volumes import yarn_volumes
-from fabric_cad.weaves import yarns_of
+from fabric_cad.weave.weaves import yarns_of
 
 FORMS = {
     "lenticular": {"weft_contact_top_mm": 2.3, "weft_offset_bottom_mm": 0.1},

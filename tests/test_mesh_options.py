@@ -13,7 +13,7 @@ from fabric_cad.meshing.plan import plan_yarn
 from fabric_cad.solved import SolvedFabric
 from fabric_cad.support import memory
 from fabric_cad.support.errors import BuildError, InputError
-from fabric_cad.weaves import yarns_of
+from fabric_cad.weave.weaves import yarns_of
 
 
 def fabric_of(family, row):

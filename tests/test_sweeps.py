@@ -11,7 +11,7 @@ from fabric_cad.identification import identify
 from fabric_cad.plots import section_outline
 from fabric_cad.support.errors import InputError
 from fabric_cad.sweeps import contact_segment, control_planes, control_sections, trajectory
-from fabric_cad.weaves import Weave, yarns_of
+from fabric_cad.weave.weaves import Weave, yarns_of
 
 seeds = st.integers(0, 2**32 - 1)
 DRAWS = {

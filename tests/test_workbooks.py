@@ -17,7 +17,7 @@ from fabric_cad.cli import main
 from fabric_cad.identification import identify
 from fabric_cad.support.errors import InputError
 from fabric_cad.tables import MEASURED, read_families, read_family
-from fabric_cad.weaves import FAMILIES
+from fabric_cad.weave.weaves import FAMILIES
 from fabric_cad.workbook_scan import LARGEST
 from fabric_cad.workbooks import letters_of
 

@@ -26,7 +26,7 @@ from OCP.XSControl import XSControl_WorkSession
 from .. import __version__
 from ..colours import COLOURS
 from ..support.errors import BuildError
-from ..weaves import direction_of
+from ..weave.weaves import direction_of
 
 _NO_TIME = "1970-01-01T00:00:00"
 """The header's time: none, for the same cell makes the same file. ``report.json`` has the date."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS
+from ..weave.weaves import DIRECTIONS
 from .faces import element_faces, touching_faces
 from .keywords import (
     Comment,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS, direction_of
+from ..weave.weaves import DIRECTIONS, direction_of
 
 # corners of the faces S1 ... S6 of C3D8
 FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..meshing.mesh import Mesh
 from ..support.errors import BuildError
-from ..weaves import DIRECTIONS, direction_of
+from ..weave.weaves import DIRECTIONS, direction_of
 from .cell import ORIENTATION, cell_keywords
 from .faces import touching_faces
 from .keywords import (

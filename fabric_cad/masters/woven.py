@@ -13,7 +13,7 @@ import numpy as np
 from fabric_cad.cad import Cell, assemble, sweep
 from fabric_cad.solved import SolvedFabric
 from fabric_cad.sweeps import control_planes, control_sections, trajectory
-from fabric_cad.weaves import yarns_of
+from fabric_cad.weave.weaves import yarns_of
 
 
 def woven(fabric: SolvedFabric, weft_over_warp: np.ndarray) -> Cell:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..sections import Frame
 from ..solved import SolvedFabric
-from ..weaves import yarns_of
+from ..weave.weaves import yarns_of
 
 if TYPE_CHECKING:
     from .options import MeshOptions

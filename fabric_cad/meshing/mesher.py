@@ -17,7 +17,7 @@ import numpy as np
 from ..solved import SolvedFabric
 from ..support.errors import BuildError, expect
 from ..support.interrupts import uninterrupted
-from ..weaves import yarns_of
+from ..weave.weaves import yarns_of
 from .count import hexahedra
 from .mesh import Mesh
 from .options import MeshOptions

@@ -10,7 +10,7 @@ import numpy as np
 from ..sections import Frame, Section
 from ..solved import SolvedFabric
 from ..sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
-from ..weaves import DIRECTIONS, Yarn
+from ..weave.weaves import DIRECTIONS, Yarn
 from .count import chord_ends, column_counts, lateral_count
 from .options import MeshOptions
 from .rings import Span, fill_rings

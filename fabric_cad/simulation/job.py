@@ -16,7 +16,7 @@ from ..decks.keywords import EngineeringConstants, write_keywords
 from ..decks.model import Load, Touch, model_keywords
 from ..meshing.mesh import Mesh
 from ..support.cores import cores
-from ..weaves import DIRECTIONS, direction_of
+from ..weave.weaves import DIRECTIONS, direction_of
 from .energy import cell_energy
 from .penetration import penetration
 from .progress import CaseProgress

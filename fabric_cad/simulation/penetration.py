@@ -16,7 +16,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS, direction_of
+from ..weave.weaves import DIRECTIONS, direction_of
 from .isoparametric import distance_to_quads, inside_hexahedra
 
 KINDS = ("crossing", "parallel")

@@ -13,7 +13,7 @@ from ..report import YARN_DATA
 from ..solved import point_columns
 from ..tables import Family
 from ..volumes import yarn_volumes
-from ..weaves import DIRECTIONS
+from ..weave.weaves import DIRECTIONS
 
 HEADLINE = (
     "identified.fabric_thickness_mm",

@@ -6,7 +6,7 @@ from ..closing import CLOSING
 from ..simulation.settings import Settings
 from ..solved import point_columns
 from ..support.errors import did_you_mean, quoted
-from ..weaves import DIRECTIONS
+from ..weave.weaves import DIRECTIONS
 
 _WEAVE = ("over", "under", "step", "wefts", "warps")
 _DIRECTION = ("slope", "p_low", "p_high", "amplitude_mm", "thickness_mm", "width_mm", "spacing_mm", "crimp")

@@ -9,10 +9,10 @@ from math import gcd
 import numpy as np
 
 from ..bounds import out_of_bounds
-from ..patterns import read_pattern, size_fault, written
 from ..support.errors import Problem
 from ..tables import MEASURED, MOST_YARNS, OTHER_UNITS, WEAVE_COLUMNS, Family
-from ..weaves import Weave, pattern_faults, weave_of
+from ..weave.patterns import read_pattern, size_fault, written
+from ..weave.weaves import Weave, pattern_faults, weave_of
 from .design import Samples
 
 CHOICES = {"section": "sections", "float_gap": "float_gaps", "thicker": "thicker"}

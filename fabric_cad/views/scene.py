@@ -11,7 +11,7 @@ import numpy as np
 
 from ..colours import COLOURS
 from ..meshing.mesh import Mesh
-from ..weaves import DIRECTIONS, direction_of
+from ..weave.weaves import DIRECTIONS, direction_of
 from .library import pyvista
 from .skin import Skin, skin_of
 

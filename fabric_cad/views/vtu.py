@@ -9,7 +9,7 @@ import numpy as np
 from ..meshing.mesh import Mesh
 from ..meshing.quality import Quality
 from ..support.interrupts import uninterrupted
-from ..weaves import DIRECTIONS, direction_of
+from ..weave.weaves import DIRECTIONS, direction_of
 from .library import pyvista
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from .support.errors import quoted
+from ..support.errors import quoted
 
 _BETWEEN = re.compile(r"[\s/|]+")
 _DIGITS, _LETTERS = set("10"), set("ou")
