@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .sections import Section
+from .section.sections import Section
+from .section.splines import Spline
 from .solved import SolvedFabric
-from .splines import Spline
 from .sweeps import control_planes, control_sections, trajectory
 from .weave.weaves import yarns_of
 

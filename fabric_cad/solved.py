@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .columns import FLOAT_GAPS
-from .sections import KINDS, ContactSide, Frame, FreeSide
+from .section.sections import KINDS, ContactSide, Frame, FreeSide
 from .support.errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
 from .support.numerals import number as number_of
 from .support.numerals import whole

@@ -17,7 +17,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .sections import KINDS
+from .section.sections import KINDS
 from .solved import PLATEAUX
 from .weave.weaves import DIRECTIONS, Weave, yarns_of
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..sections import Frame
+from ..section.sections import Frame
 from ..solved import SolvedFabric
 from ..weave.weaves import yarns_of
 

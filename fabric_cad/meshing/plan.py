@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..sections import Frame, Section
+from ..section.sections import Frame, Section
 from ..solved import SolvedFabric
 from ..sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
 from ..weave.weaves import DIRECTIONS, Yarn
