@@ -19,11 +19,11 @@ from importlib import import_module
 __version__ = "0.1.0"
 
 _FROM = {
-    "read_family": "tables",
-    "read_families": "tables",
-    "measured_fabric": "by_hand",
-    "Family": "tables",
-    "read_wif": "wif",
+    "read_family": "measured.tables",
+    "read_families": "measured.tables",
+    "measured_fabric": "measured.by_hand",
+    "Family": "measured.tables",
+    "read_wif": "measured.wif",
     "identify": "identification",
     "propagate": "scatter",
     "read_solved": "solved",

@@ -271,8 +271,8 @@ def _tables(settings, partial: bool = False) -> tuple[dict, list[InputError]]:
     With ``partial`` a table that can be read is there without its wrong rows, whose errors are told.
     """
     from .identification import identify, identify_rows
-    from .table_files import stray_tables
-    from .tables import read_families
+    from .measured.table_files import stray_tables
+    from .measured.tables import read_families
 
     solved, errors = {}, []
     for family, table in read_families(settings.families, partial).items():
@@ -620,7 +620,7 @@ def _count(text: str) -> int:
 
 
 def _wif(settings) -> int:
-    from .wif import wif_row
+    from .measured.wif import wif_row
 
     say(wif_row(settings.draft, settings.name), end="")
     return 0
@@ -634,7 +634,7 @@ def shipped_families() -> Path:
 
 def _other_form(table: Path) -> Path:
     """The file, or the workbook that holds the same table."""
-    from .table_files import WORKBOOKS
+    from .measured.table_files import WORKBOOKS
 
     forms = [table.with_suffix(suffix) for suffix in WORKBOOKS] if table.suffix == ".csv" else []
     return next((form for form in forms if form.exists()), table)

@@ -15,11 +15,11 @@ import numpy as np
 
 from .closing import ALONE, BOUNDED, CLOSING, ROUNDING, RULES, SYMBOLS, Closed
 from .lengths import excess_length, slope_from_crimp
+from .measured.tables import Family
 from .plausibility import LARGEST_SLOPE, responsible, too_steep
 from .section.sections import free_parabola, lateral_arc, round_between, round_free_side
 from .solved import PLATEAUX, SolvedTable, point_columns
 from .support.errors import InputError, Problem, expect
-from .tables import Family
 from .weave.weaves import DIRECTIONS
 
 CONTACT_SIDE = {"high": "bottom", "low": "top"}

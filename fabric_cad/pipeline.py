@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .identification import identify
+from .measured.table_files import stray_tables
+from .measured.tables import Family, expect_row, read_families
 from .scatter import propagate
 from .solved import SolvedFabric, SolvedTable, read_solved
 from .support.errors import InputError, Problem, did_you_mean, quoted
 from .support.interrupts import uninterrupted
 from .support.staging import staged
 from .sweeps import contact_patches
-from .table_files import stray_tables
-from .tables import Family, expect_row, read_families
 
 if TYPE_CHECKING:
     from .cad import Consistency

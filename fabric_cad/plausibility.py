@@ -26,8 +26,8 @@ from math import pi, sqrt
 
 import numpy as np
 
+from .measured.tables import Family
 from .support.errors import Problem
-from .tables import Family
 from .weave.weaves import DIRECTIONS
 
 DENSEST = pi / sqrt(12)

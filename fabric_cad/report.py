@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .measured.tables import Family
 from .meshing.mesh import Mesh
 from .plausibility import LEAST_JACOBIAN
 from .solved import Direction, SolvedFabric, point_columns
 from .support.errors import BuildError
-from .tables import Family
 from .weave.weaves import Weave
 
 COINCIDENT = 1e-9

@@ -17,9 +17,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .identification import identify
+from .measured.tables import Family
 from .solved import SolvedTable
 from .support.errors import InputError, Problem, expect
-from .tables import Family
 from .weave.weaves import DIRECTIONS
 
 _STEP = 2.0**-17

@@ -24,7 +24,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from .columns import FLOAT_GAPS
+from .measured.columns import FLOAT_GAPS
 from .section.sections import KINDS, ContactSide, Frame, FreeSide
 from .support.errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
 from .support.numerals import number as number_of
@@ -78,7 +78,7 @@ class Direction:
 class SolvedFabric:
     """One row of a solved table.
 
-    ``float_gap`` is one of :data:`~fabric_cad.columns.FLOAT_GAPS`.
+    ``float_gap`` is one of :data:`~fabric_cad.measured.columns.FLOAT_GAPS`.
     """
 
     name: str

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from . import __version__
-from .columns import WEAVE_COLUMNS
+from .measured.columns import WEAVE_COLUMNS
+from .measured.tables import Family
 from .meshing.options import MeshOptions
-from .tables import Family
 
 REPORT = "report.json"
 

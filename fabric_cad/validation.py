@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from .measured.tables import Family
 from .scatter import Spread
 from .solved import SolvedTable
-from .tables import Family
 from .weave.weaves import DIRECTIONS
 
 _SHOWN = (  # label, quantity of a direction, factor

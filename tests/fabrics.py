@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fabric_cad.tables import Family, read_family
+from fabric_cad.measured.tables import Family, read_family
 from fabric_cad.weave.patterns import written
 from fabric_cad.weave.weaves import pattern_faults
 

@@ -71,9 +71,9 @@ def _load(part: str) -> None:
 
 def _load_light() -> None:
     import fabric_cad.identification
+    import fabric_cad.measured.wif  # noqa: F401
     import fabric_cad.scatter
     import fabric_cad.study.run
-    import fabric_cad.wif  # noqa: F401
 
 
 def _try(of: tuple[str, int]) -> Result:

@@ -7,8 +7,8 @@ import pytest
 
 import fabric_cad
 from fabric_cad import ArgumentError, InputError, identify, measured_fabric
+from fabric_cad.measured.tables import MEASURED
 from fabric_cad.meshing import Mesh
-from fabric_cad.tables import MEASURED
 
 MINE = {"over": 2, "under": 2, "weft_density_per_mm": 0.35, "weft_width_mm": 2.4, "weft_crimp_percent": 0.4}
 

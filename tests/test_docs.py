@@ -10,7 +10,7 @@ from links import broken_links
 
 import fabric_cad
 from fabric_cad import identify, read_family
-from fabric_cad.columns import MEASURED, OTHER_UNITS, TEXTS, WEAVE_COLUMNS
+from fabric_cad.measured.columns import MEASURED, OTHER_UNITS, TEXTS, WEAVE_COLUMNS
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from fabric_cad.cli import shipped_families
 from fabric_cad.identification import identify
 from fabric_cad.lengths import excess_length
+from fabric_cad.measured.tables import MOST_YARNS, read_families, read_family
 from fabric_cad.solved import read_solved
 from fabric_cad.support.errors import InputError
-from fabric_cad.tables import MOST_YARNS, read_families, read_family
 from fabric_cad.weave.patterns import read_pattern, written
 from fabric_cad.weave.weaves import FAMILIES, Weave, pattern_faults, yarns_of
 

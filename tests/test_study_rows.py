@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 from scipy.integrate import quad
 
-from fabric_cad.bounds import out_of_bounds
 from fabric_cad.identification import identify, identify_rows
+from fabric_cad.measured.bounds import out_of_bounds
+from fabric_cad.measured.tables import FLOAT_GAPS
 from fabric_cad.pipeline import Stages, checked_report, make_step
 from fabric_cad.study.design import DESIGNS, Samples
 from fabric_cad.study.factors import Values
@@ -20,7 +21,6 @@ from fabric_cad.study.rows import base_value, study_rows
 from fabric_cad.study.store import unit_key
 from fabric_cad.study.units import Work
 from fabric_cad.support.errors import InputError
-from fabric_cad.tables import FLOAT_GAPS
 from fabric_cad.volumes import yarn_volumes
 from fabric_cad.weave.weaves import yarns_of
 

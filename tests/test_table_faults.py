@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from fabric_cad.cli import main
+from fabric_cad.measured.tables import WEAVE_COLUMNS, read_families, read_family
 from fabric_cad.pipeline import find_row
 from fabric_cad.support.errors import ArgumentError, InputError, Problem, UnknownRowError
-from fabric_cad.tables import WEAVE_COLUMNS, read_families, read_family
 
 HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp"
 GOOD = "good,3,2,0.35,2.4,0.004"

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from fabric_cad.measured.tables import MEASURED, read_families, read_family
 from fabric_cad.support.errors import InputError
-from fabric_cad.tables import MEASURED, read_families, read_family
 
 HEADER = (
     "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp,warp_density_per_mm,warp_width_mm,warp_crimp,notes"

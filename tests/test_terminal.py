@@ -146,7 +146,7 @@ def test_a_name_that_cannot_be_printed_is_escaped(here):
     assert done.stderr.startswith("f\\xe4milies/twill.csv:2: weft_width_mm")
 
 
-@pytest.mark.parametrize("place", ["fabric_cad.tables.read_families", "pathlib.Path.mkdir"])
+@pytest.mark.parametrize("place", ["fabric_cad.measured.tables.read_families", "pathlib.Path.mkdir"])
 def test_a_folder_of_another_user_is_told(here, monkeypatch, capsys, place):
     def denied(path, *rest, **more):
         raise PermissionError(13, "Permission denied", str(path))

@@ -3,9 +3,9 @@
 import pytest
 
 from fabric_cad.cli import main
+from fabric_cad.measured.tables import read_family
+from fabric_cad.measured.wif import read_wif, wif_row
 from fabric_cad.support.errors import InputError
-from fabric_cad.tables import read_family
-from fabric_cad.wif import read_wif, wif_row
 
 TWILL22 = ("0011", "1001", "1100", "0110")
 

@@ -15,11 +15,11 @@ from odf.text import P
 
 from fabric_cad.cli import main
 from fabric_cad.identification import identify
+from fabric_cad.measured.tables import MEASURED, read_families, read_family
+from fabric_cad.measured.workbook_scan import LARGEST
+from fabric_cad.measured.workbooks import letters_of
 from fabric_cad.support.errors import InputError
-from fabric_cad.tables import MEASURED, read_families, read_family
 from fabric_cad.weave.weaves import FAMILIES
-from fabric_cad.workbook_scan import LARGEST
-from fabric_cad.workbooks import letters_of
 
 HEADER = ["name", "over", "under", "weft_density_per_mm", "weft_width_mm", "weft_crimp", "warp_crimp", "notes"]
 ROW = ["t32", 3, 2, 0.35, 2.4, 0.004, None, "a note"]

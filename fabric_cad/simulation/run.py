@@ -15,10 +15,10 @@ from pathlib import Path
 import numpy as np
 
 from ..decks.model import Load
+from ..measured.tables import Family
 from ..pipeline import Stages
 from ..support.errors import SolverError
 from ..support.staging import staged
-from ..tables import Family
 from ..traces import renew_digests, trace, write_traced
 from .cell import loaded_cell
 from .job import Job, Reached, Solver, at_rest, condition, run_job, write_model

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ..measured.tables import Family, read_families
 from ..support.errors import InputError, Problem, did_you_mean, quoted
 from ..support.toml_files import read_toml
-from ..tables import Family, read_families
 
 FILE = "simulation.toml"
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from ..closing import CLOSING
 from ..identification import Identified
+from ..measured.tables import Family
 from ..plausibility import implausible
 from ..report import YARN_DATA
 from ..solved import point_columns
-from ..tables import Family
 from ..volumes import yarn_volumes
 from ..weave.weaves import DIRECTIONS
 

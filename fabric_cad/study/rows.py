@@ -8,9 +8,9 @@ from math import gcd
 
 import numpy as np
 
-from ..bounds import out_of_bounds
+from ..measured.bounds import out_of_bounds
+from ..measured.tables import MEASURED, MOST_YARNS, OTHER_UNITS, WEAVE_COLUMNS, Family
 from ..support.errors import Problem
-from ..tables import MEASURED, MOST_YARNS, OTHER_UNITS, WEAVE_COLUMNS, Family
 from ..weave.patterns import read_pattern, size_fault, written
 from ..weave.weaves import Weave, pattern_faults, weave_of
 from .design import Samples

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from ..identification import identify_rows
+from ..measured.tables import Family
 from ..support.errors import FabricCadError, InputError, Problem
 from ..support.staging import staged
-from ..tables import Family
 from .definition import Study
 from .design import DESIGNS, Samples
 from .engine import run_tasks

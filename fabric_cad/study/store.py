@@ -16,9 +16,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .. import __version__
+from ..measured.tables import Family
 from ..support import locks
 from ..support.errors import OutputError
-from ..tables import Family
 from .lines import read_line, written_line
 from .units import Outcome, Work
 

@@ -6,6 +6,10 @@ import math
 import re
 from collections.abc import Sequence
 
+from ..support.errors import Place, Problem, did_you_mean, quoted
+from ..support.numerals import number, whole
+from ..weave.patterns import read_pattern, size_fault
+from ..weave.weaves import DIRECTIONS, pattern_faults
 from .columns import (
     FLOAT_GAPS,
     MAY_BE_ZERO,
@@ -21,10 +25,6 @@ from .columns import (
     is_safe_name,
 )
 from .records import Record
-from .support.errors import Place, Problem, did_you_mean, quoted
-from .support.numerals import number, whole
-from .weave.patterns import read_pattern, size_fault
-from .weave.weaves import DIRECTIONS, pattern_faults
 
 FREE_TEXTS = ("source", "notes")
 

@@ -6,12 +6,12 @@ import math
 from collections.abc import Iterable
 from numbers import Integral, Real
 
+from ..support.errors import ArgumentError, InputError, Place, Problem, did_you_mean
+from ..weave.weaves import FAMILIES
 from .columns import MEASURED, OTHER_UNITS, STD, TEXTS, WEAVE_COLUMNS
 from .records import Record
 from .row_rules import RowReader
-from .support.errors import ArgumentError, InputError, Place, Problem, did_you_mean
 from .tables import Family, family_table
-from .weave.weaves import FAMILIES
 
 
 def measured_fabric(family: str, **columns: object) -> Family:

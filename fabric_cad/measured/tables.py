@@ -1,7 +1,7 @@
 """Family tables: what was measured, a file a weave type and a row a fabric.
 
-A table is a CSV in any dialect a spreadsheet writes (:mod:`~fabric_cad.records`) or a workbook
-(:mod:`~fabric_cad.workbooks`). It is read whole: everything that is wrong in it is listed in one
+A table is a CSV in any dialect a spreadsheet writes (:mod:`~fabric_cad.measured.records`) or a workbook
+(:mod:`~fabric_cad.measured.workbooks`). It is read whole: everything that is wrong in it is listed in one
 :class:`~fabric_cad.support.errors.InputError`.
 """
 
@@ -14,6 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..support.errors import ArgumentError, InputError, Place, Problem, UnknownRowError, did_you_mean, expect
+from ..weave.weaves import Weave, weave_of
 from .columns import (
     FLOAT_GAPS,
     MEASURED,
@@ -27,9 +29,7 @@ from .columns import (
 )
 from .records import Records, read_csv
 from .row_rules import RowReader, header_problems
-from .support.errors import ArgumentError, InputError, Place, Problem, UnknownRowError, did_you_mean, expect
 from .table_files import NO_TABLE, WORKBOOKS, family_of, stray_tables, table_files
-from .weave.weaves import Weave, weave_of
 
 __all__ = [
     "FLOAT_GAPS",
@@ -193,7 +193,7 @@ def table_of(family: str, records: Records) -> Family:
 def family_table(
     family: str, place: Place, rows: Sequence[Mapping], lines: Sequence[int | None], refused: tuple[Problem, ...] = ()
 ) -> Family:
-    """The table of rows as :class:`~fabric_cad.row_rules.RowReader` gives them."""
+    """The table of rows as :class:`~fabric_cad.measured.row_rules.RowReader` gives them."""
     return Family(
         family=family,
         place=place,

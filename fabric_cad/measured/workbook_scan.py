@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
-from .support.errors import InputError, Problem
+from ..support.errors import InputError, Problem
 
 LARGEST = 50 * 2**20
 """Bytes that a workbook may unpack to."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from difflib import get_close_matches
 from pathlib import Path
 
-from .support.errors import InputError, Problem
-from .weave.weaves import FAMILIES
+from ..support.errors import InputError, Problem
+from ..weave.weaves import FAMILIES
 
 WORKBOOKS = (".xlsx", ".ods")
 SUFFIXES = (".csv", *WORKBOOKS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from .weave.weaves import DIRECTIONS
+from ..weave.weaves import DIRECTIONS
 
 WEAVE_COLUMNS = {"plain": (), "twill": ("over", "under"), "satin": ("harness", "step"), "pattern": ("pattern",)}
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from .support.errors import InputError, Problem, quoted, read_input
+from ..support.errors import InputError, Problem, quoted, read_input
 
 READ = (
     *("weaving", "warp", "weft", "threading", "tieup", "treadling", "liftplan"),

@@ -8,8 +8,8 @@ import string
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..support.errors import InputError, Place, Problem, read_input
 from .records import Record, Records
-from .support.errors import InputError, Place, Problem, read_input
 from .workbook_scan import READING_ERRORS, Sheet, scan_workbook
 
 _OLD = b"\xd0\xcf\x11\xe0"  # of an OLE file, which an encrypted workbook is too

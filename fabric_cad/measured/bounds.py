@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .support.errors import Problem
+from ..support.errors import Problem
+from ..weave.weaves import DIRECTIONS
 from .tables import MEASURED, Family
-from .weave.weaves import DIRECTIONS
 
 
 def out_of_bounds(table: Family) -> dict[int, Problem]:

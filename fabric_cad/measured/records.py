@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .support.errors import InputError, Place, read_input
+from ..support.errors import InputError, Place, read_input
 
 
 @dataclass(frozen=True)

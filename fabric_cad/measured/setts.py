@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from ..support.errors import quoted
+from ..weave.weaves import DIRECTIONS
 from .drafts import MOST_THREADS, Draft
-from .support.errors import quoted
-from .weave.weaves import DIRECTIONS
 
 _UNITS = {
     **dict.fromkeys(("decipoints", "decipoint"), 25.4 / 720),

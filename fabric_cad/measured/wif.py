@@ -17,12 +17,12 @@ import io
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..support.errors import InputError, Problem, quoted
+from ..weave.patterns import written
+from ..weave.weaves import pattern_faults
 from .drafts import MOST_THREADS, Draft, read_draft
 from .setts import sett
-from .support.errors import InputError, Problem, quoted
 from .tables import MOST_YARNS, is_safe_name
-from .weave.patterns import written
-from .weave.weaves import pattern_faults
 
 _ROW = (
     "name",
