@@ -270,9 +270,9 @@ def _tables(settings, partial: bool = False) -> tuple[dict, list[InputError]]:
 
     With ``partial`` a table that can be read is there without its wrong rows, whose errors are told.
     """
-    from .identification import identify, identify_rows
     from .measured.table_files import stray_tables
     from .measured.tables import read_families
+    from .model.identification import identify, identify_rows
 
     solved, errors = {}, []
     for family, table in read_families(settings.families, partial).items():
@@ -347,7 +347,7 @@ def _solve(settings) -> int:
 
 def _warn_of(settings, solved: dict) -> None:
     """Warn of what is seldom true of a fabric, in all rows of solved tables."""
-    from .plausibility import implausible
+    from .model.plausibility import implausible
 
     for measured, table in solved.values():
         _warn(settings, map(str, implausible(measured, table.columns)))
@@ -379,8 +379,8 @@ def _print_notes(table) -> None:
 
 
 def _validate(settings) -> int:
-    from .scatter import doubts, propagate
-    from .validation import compared, spread_out
+    from .model.scatter import doubts, propagate
+    from .model.validation import compared, spread_out
 
     solved, errors = _tables(settings)
     comparisons, spreads, notes, worst = [], [], [], []
@@ -444,9 +444,9 @@ def _each_row(settings, work: Callable[[str], None]) -> int:
 
 def _row(settings, name: str):
     """The table of one row, warned of; what is wrong with other rows and tables is told once."""
-    from .identification import identify
+    from .model.identification import identify
+    from .model.plausibility import implausible
     from .pipeline import find_row
-    from .plausibility import implausible
 
     row, others = find_row(settings.families, name)
     told = vars(settings).setdefault("told", set())
@@ -471,9 +471,9 @@ def _cell(settings) -> int:
 
 
 def _make_cell(settings, name: str) -> None:
-    from .identification import identify
     from .meshing.count import hexahedra
     from .meshing.options import mesh_options
+    from .model.identification import identify
     from .pipeline import Stages, make_cell
     from .report import summary
 

@@ -28,7 +28,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .solved import Direction, SolvedFabric
+from .model.solved import Direction, SolvedFabric
 from .support.errors import BuildError
 from .sweeps import control_planes, control_sections, skin, trajectory
 from .weave.weaves import Yarn, yarns_of

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from .model.solved import SolvedFabric
 from .section.sections import Section
 from .section.splines import Spline
-from .solved import SolvedFabric
 from .sweeps import control_planes, control_sections, trajectory
 from .weave.weaves import yarns_of
 

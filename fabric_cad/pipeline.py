@@ -10,11 +10,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .identification import identify
 from .measured.table_files import stray_tables
 from .measured.tables import Family, expect_row, read_families
-from .scatter import propagate
-from .solved import SolvedFabric, SolvedTable, read_solved
+from .model.identification import identify
+from .model.scatter import propagate
+from .model.solved import SolvedFabric, SolvedTable, read_solved
 from .support.errors import InputError, Problem, did_you_mean, quoted
 from .support.interrupts import uninterrupted
 from .support.staging import staged
@@ -131,7 +131,7 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
 
 def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> dict:
     """The report of what was made. Raises :class:`BuildError` where it shows a cell that is not consistent."""
-    from .plausibility import doubtful_report, implausible
+    from .model.plausibility import doubtful_report, implausible
     from .report import cell_report, check_report, yarn_data
 
     report = cell_report(

@@ -15,10 +15,10 @@ from scipy.interpolate import BSpline, CloughTocher2DInterpolator
 
 from .colours import COLOURS
 from .comparison import MODELS, TOLERANCE, Model, crossing_gap
+from .model.solved import SolvedFabric, point_columns
 from .section.sections import KINDS, Section, contact_section, free_section
 from .section.splines import Spline
 from .simulation.penetration import valid_until
-from .solved import SolvedFabric, point_columns
 from .sweeps import control_planes, control_sections, trajectory
 from .weave.weaves import DIRECTIONS, Yarn, direction_of, yarns_of
 

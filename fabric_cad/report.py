@@ -9,8 +9,8 @@ import numpy as np
 
 from .measured.tables import Family
 from .meshing.mesh import Mesh
-from .plausibility import LEAST_JACOBIAN
-from .solved import Direction, SolvedFabric, point_columns
+from .model.plausibility import LEAST_JACOBIAN
+from .model.solved import Direction, SolvedFabric, point_columns
 from .support.errors import BuildError
 from .weave.weaves import Weave
 

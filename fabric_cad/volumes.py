@@ -17,8 +17,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from .model.solved import PLATEAUX
 from .section.sections import KINDS
-from .solved import PLATEAUX
 from .weave.weaves import DIRECTIONS, Weave, yarns_of
 
 

@@ -91,7 +91,7 @@ def _direction(rng: np.random.Generator, direction: str, spacing: float, widths:
 
 def _thickness(rng: np.random.Generator, row: dict, ratio: float | None) -> dict:
     """One thickness, drawn around what the two crimps imply for yarns of about that ratio of thicknesses."""
-    from fabric_cad.lengths import slope_from_crimp
+    from fabric_cad.model.lengths import slope_from_crimp
 
     repeat = row["over"] + row["under"] if "over" in row else row.get("harness", 2)
     total = 0.0

@@ -70,9 +70,9 @@ def _load(part: str) -> None:
 
 
 def _load_light() -> None:
-    import fabric_cad.identification
     import fabric_cad.measured.wif  # noqa: F401
-    import fabric_cad.scatter
+    import fabric_cad.model.identification
+    import fabric_cad.model.scatter
     import fabric_cad.study.run
 
 

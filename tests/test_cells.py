@@ -20,8 +20,8 @@ from fabric_cad.cli import shipped_families
 from fabric_cad.edges import allowed_scaled_jacobian
 from fabric_cad.measured.tables import read_families
 from fabric_cad.meshing.count import hexahedra
+from fabric_cad.model.solved import read_solved
 from fabric_cad.pipeline import find_row, make_cell
-from fabric_cad.solved import read_solved
 from fabric_cad.support.staging import staged
 from fabric_cad.sweeps import contact_patches, control_planes, control_sections, skin, trajectory
 from fabric_cad.traces import renew_digests

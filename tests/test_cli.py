@@ -36,7 +36,7 @@ def test_list_shows_every_row_with_its_model(here, capsys):
 
 
 def test_solve_writes_every_table(here, capsys):
-    from fabric_cad.solved import read_solved
+    from fabric_cad.model.solved import read_solved
 
     assert main(["solve", "--out", "results"]) == 0
     assert "plain_unbalanced: two solutions" in capsys.readouterr().out

@@ -8,9 +8,9 @@ from fabrics import TWILL32, UNBALANCED, random_general_row, random_row, table
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from fabric_cad.closing import CLOSING
-from fabric_cad.identification import identify
-from fabric_cad.lengths import excess_length
+from fabric_cad.model.closing import CLOSING
+from fabric_cad.model.identification import identify
+from fabric_cad.model.lengths import excess_length
 from fabric_cad.support.errors import InputError
 
 seeds = st.integers(0, 2**32 - 1)

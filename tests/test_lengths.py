@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from fabric_cad.lengths import excess_length, slope_from_crimp
+from fabric_cad.model.lengths import excess_length, slope_from_crimp
 
 crimps = st.floats(1e-5, 0.2)
 shares = st.floats(0.3, 0.99)

@@ -5,12 +5,12 @@ import pytest
 from fabrics import TWILL32, random_general_row, random_row, table
 
 from fabric_cad.cli import main
-from fabric_cad.identification import identify_rows
 from fabric_cad.meshing import mesher
 from fabric_cad.meshing.count import hexahedra, needed_memory
 from fabric_cad.meshing.options import MOST, MeshOptions, mesh_options
 from fabric_cad.meshing.plan import plan_yarn
-from fabric_cad.solved import SolvedFabric
+from fabric_cad.model.identification import identify_rows
+from fabric_cad.model.solved import SolvedFabric
 from fabric_cad.support import memory
 from fabric_cad.support.errors import BuildError, InputError
 from fabric_cad.weave.weaves import yarns_of

@@ -7,10 +7,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fabric_cad.cli import shipped_families
-from fabric_cad.identification import identify
-from fabric_cad.lengths import excess_length
 from fabric_cad.measured.tables import MOST_YARNS, read_families, read_family
-from fabric_cad.solved import read_solved
+from fabric_cad.model.identification import identify
+from fabric_cad.model.lengths import excess_length
+from fabric_cad.model.solved import read_solved
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.patterns import read_pattern, written
 from fabric_cad.weave.weaves import FAMILIES, Weave, pattern_faults, yarns_of

@@ -9,8 +9,8 @@ import pytest
 from fabrics import TWILL32, UNBALANCED, table
 
 from fabric_cad.cli import main
-from fabric_cad.identification import identify, identify_rows
-from fabric_cad.plausibility import (
+from fabric_cad.model.identification import identify, identify_rows
+from fabric_cad.model.plausibility import (
     DENSEST,
     LARGEST_SLOPE,
     LEAST_JACOBIAN,

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 
 import fabric_cad
 from fabric_cad.cli import main, shipped_families
-from fabric_cad.closing import CLOSING
-from fabric_cad.identification import identify
-from fabric_cad.lengths import _excess_derivative
 from fabric_cad.measured.tables import MEASURED, read_families
-from fabric_cad.scatter import doubts, propagate
+from fabric_cad.model.closing import CLOSING
+from fabric_cad.model.identification import identify
+from fabric_cad.model.lengths import _excess_derivative
+from fabric_cad.model.scatter import doubts, propagate
+from fabric_cad.model.validation import plus_minus
 from fabric_cad.support.errors import InputError
-from fabric_cad.validation import plus_minus
 
 seeds = st.integers(0, 2**32 - 1)
 SAMPLES = 8000

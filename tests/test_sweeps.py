@@ -7,7 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
-from fabric_cad.identification import identify
+from fabric_cad.model.identification import identify
 from fabric_cad.plots import section_outline
 from fabric_cad.support.errors import InputError
 from fabric_cad.sweeps import contact_segment, control_planes, control_sections, trajectory

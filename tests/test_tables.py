@@ -196,7 +196,7 @@ def test_empty_tables(tmp_path, text):
 
 
 def test_a_header_alone_is_a_table_of_no_rows(tmp_path):
-    from fabric_cad.identification import identify
+    from fabric_cad.model.identification import identify
 
     table = read_family(write(tmp_path, HEADER + "\n"))
     assert len(table) == 0 and len(identify(table)) == 0

@@ -14,10 +14,10 @@ from odf.table import CoveredTableCell, Table, TableCell, TableRow
 from odf.text import P
 
 from fabric_cad.cli import main
-from fabric_cad.identification import identify
 from fabric_cad.measured.tables import MEASURED, read_families, read_family
 from fabric_cad.measured.workbook_scan import LARGEST
 from fabric_cad.measured.workbooks import letters_of
+from fabric_cad.model.identification import identify
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import FAMILIES
 

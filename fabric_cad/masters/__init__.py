@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from ..solved import SolvedFabric
+from ..model.solved import SolvedFabric
 from ..support.errors import expect
 
 

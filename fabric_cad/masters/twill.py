@@ -4,7 +4,7 @@ Open this file in CQ-editor, let SOLVED name a row that `fabric-cad cell` has so
 """
 
 from fabric_cad.masters.woven import show, woven
-from fabric_cad.solved import read_solved
+from fabric_cad.model.solved import read_solved
 from fabric_cad.weave.weaves import Weave
 
 SOLVED = "build/twill32/solved.csv"

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from fabric_cad.cad import Cell, assemble, sweep
-from fabric_cad.solved import SolvedFabric
+from fabric_cad.model.solved import SolvedFabric
 from fabric_cad.sweeps import control_planes, control_sections, trajectory
 from fabric_cad.weave.weaves import yarns_of
 

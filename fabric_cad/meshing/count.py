@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from ..model.solved import SolvedFabric
 from ..section.sections import Frame
-from ..solved import SolvedFabric
 from ..weave.weaves import yarns_of
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..solved import SolvedFabric
+from ..model.solved import SolvedFabric
 from ..support.errors import BuildError, expect
 from ..support.interrupts import uninterrupted
 from ..weave.weaves import yarns_of

@@ -8,7 +8,7 @@ from math import ceil, isfinite
 from numbers import Integral
 from types import MappingProxyType
 
-from ..solved import SolvedFabric
+from ..model.solved import SolvedFabric
 from ..support.errors import InputError, Problem
 from ..support.memory import available_memory
 from .count import hexahedra, needed_memory

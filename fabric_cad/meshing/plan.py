@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..model.solved import SolvedFabric
 from ..section.sections import Frame, Section
-from ..solved import SolvedFabric
 from ..sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
 from ..weave.weaves import DIRECTIONS, Yarn
 from .count import chord_ends, column_counts, lateral_count

@@ -9,8 +9,8 @@ from pathlib import Path
 from ..measured.tables import Family
 from ..meshing.mesh import Mesh
 from ..meshing.options import MeshOptions, mesh_options
+from ..model.solved import SolvedFabric
 from ..pipeline import Stages, checked_report, make_mesh, make_step
-from ..solved import SolvedFabric
 from .settings import Settings
 
 

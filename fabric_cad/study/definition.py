@@ -193,8 +193,8 @@ class _Reader:
 
     def check_mesh(self, base: Family, mesh: Mapping) -> None:
         """What the base row cannot be meshed with."""
-        from ..identification import identify
         from ..meshing.options import mesh_options
+        from ..model.identification import identify
 
         try:
             fabric = identify(base)[base.names[0]]

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..closing import CLOSING
-from ..identification import Identified
 from ..measured.tables import Family
-from ..plausibility import implausible
+from ..model.closing import CLOSING
+from ..model.identification import Identified
+from ..model.plausibility import implausible
+from ..model.solved import point_columns
 from ..report import YARN_DATA
-from ..solved import point_columns
 from ..volumes import yarn_volumes
 from ..weave.weaves import DIRECTIONS
 

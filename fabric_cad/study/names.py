@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ..closing import CLOSING
+from ..model.closing import CLOSING
+from ..model.solved import point_columns
 from ..simulation.settings import Settings
-from ..solved import point_columns
 from ..support.errors import did_you_mean, quoted
 from ..weave.weaves import DIRECTIONS
 

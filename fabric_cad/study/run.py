@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..identification import identify_rows
 from ..measured.tables import Family
+from ..model.identification import identify_rows
 from ..support.errors import FabricCadError, InputError, Problem
 from ..support.staging import staged
 from .definition import Study

@@ -30,9 +30,9 @@ def load_cad() -> None:
     """Load what a cell takes, so that a fork of this process has it at once."""
     import fabric_cad.cad
     import fabric_cad.decks.cell
-    import fabric_cad.identification
     import fabric_cad.masters
     import fabric_cad.meshing.mesher
+    import fabric_cad.model.identification
     import fabric_cad.report
     import fabric_cad.views  # noqa: F401
 

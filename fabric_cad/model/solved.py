@@ -24,12 +24,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from .measured.columns import FLOAT_GAPS
-from .section.sections import KINDS, ContactSide, Frame, FreeSide
-from .support.errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
-from .support.numerals import number as number_of
-from .support.numerals import whole
-from .weave.weaves import Weave
+from ..measured.columns import FLOAT_GAPS
+from ..section.sections import KINDS, ContactSide, Frame, FreeSide
+from ..support.errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
+from ..support.numerals import number as number_of
+from ..support.numerals import whole
+from ..weave.weaves import Weave
 
 PLATEAUX = ("low", "high")
 

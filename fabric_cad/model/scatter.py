@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..measured.tables import Family
+from ..support.errors import InputError, Problem, expect
+from ..weave.weaves import DIRECTIONS
 from .identification import identify
-from .measured.tables import Family
 from .solved import SolvedTable
-from .support.errors import InputError, Problem, expect
-from .weave.weaves import DIRECTIONS
 
 _STEP = 2.0**-17
 """Step of the differences as a share of the value: the cube root of the rounding, where a central

@@ -26,9 +26,9 @@ from math import pi, sqrt
 
 import numpy as np
 
-from .measured.tables import Family
-from .support.errors import Problem
-from .weave.weaves import DIRECTIONS
+from ..measured.tables import Family
+from ..support.errors import Problem
+from ..weave.weaves import DIRECTIONS
 
 DENSEST = pi / sqrt(12)
 """Largest share of a section that parallel round fibres fill."""

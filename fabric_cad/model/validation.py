@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from .measured.tables import Family
+from ..measured.tables import Family
+from ..weave.weaves import DIRECTIONS
 from .scatter import Spread
 from .solved import SolvedTable
-from .weave.weaves import DIRECTIONS
 
 _SHOWN = (  # label, quantity of a direction, factor
     ("crimp %", "crimp", 100.0),

@@ -1,8 +1,8 @@
 """From measured rows to the parameters of the model, whole tables at once.
 
 Density and width known, the crimp of a yarn fixes its amplitude A through the length equation
-and the reverse; the relations of :mod:`~fabric_cad.closing` give the rest. The first quantities
-given, in the order of :data:`~fabric_cad.closing.CLOSING`, identify a row; what a row holds
+and the reverse; the relations of :mod:`~fabric_cad.model.closing` give the rest. The first quantities
+given, in the order of :data:`~fabric_cad.model.closing.CLOSING`, identify a row; what a row holds
 beyond them is compared with the model.
 """
 
@@ -13,14 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..measured.tables import Family
+from ..section.sections import free_parabola, lateral_arc, round_between, round_free_side
+from ..support.errors import InputError, Problem, expect
+from ..weave.weaves import DIRECTIONS
 from .closing import ALONE, BOUNDED, CLOSING, ROUNDING, RULES, SYMBOLS, Closed
 from .lengths import excess_length, slope_from_crimp
-from .measured.tables import Family
 from .plausibility import LARGEST_SLOPE, responsible, too_steep
-from .section.sections import free_parabola, lateral_arc, round_between, round_free_side
 from .solved import PLATEAUX, SolvedTable, point_columns
-from .support.errors import InputError, Problem, expect
-from .weave.weaves import DIRECTIONS
 
 CONTACT_SIDE = {"high": "bottom", "low": "top"}
 """The side of a yarn that touches at each plateau."""
@@ -110,7 +110,7 @@ class Identified:
     ``columns`` are those of the solved table, as arrays or lists of one value for each of ``rows``, the
     numbers of the rows that are fabrics; ``refused`` holds for every other row number what makes it none.
     ``closing`` and ``beyond``, shape (5, fabrics), are the measured quantities of
-    :data:`~fabric_cad.closing.CLOSING` and whether they are beyond what identified the row.
+    :data:`~fabric_cad.model.closing.CLOSING` and whether they are beyond what identified the row.
     """
 
     columns: Mapping[str, Sequence]
