@@ -18,7 +18,7 @@ from .model.solved import SolvedFabric, SolvedTable, read_solved
 from .support.errors import InputError, Problem, did_you_mean, quoted
 from .support.interrupts import uninterrupted
 from .support.staging import staged
-from .sweeps import contact_patches
+from .yarn.sweeps import contact_patches
 
 if TYPE_CHECKING:
     from .cad import Consistency
@@ -123,8 +123,8 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
         mesh = read_mesh(msh)
     with stages("quality"):
         with uninterrupted():
-            from .edges import allowed_scaled_jacobian
             from .meshing.quality import mesh_quality
+            from .yarn.edges import allowed_scaled_jacobian
 
         return Meshed(mesh, mesh_quality(mesh), allowed_scaled_jacobian(made.fabric))
 

@@ -19,8 +19,8 @@ from .model.solved import SolvedFabric, point_columns
 from .section.sections import KINDS, Section, contact_section, free_section
 from .section.splines import Spline
 from .simulation.penetration import valid_until
-from .sweeps import control_planes, control_sections, trajectory
 from .weave.weaves import DIRECTIONS, Yarn, direction_of, yarns_of
+from .yarn.sweeps import control_planes, control_sections, trajectory
 
 _POINTS = 41
 _ACROSS = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 301)) / 2  # of a width, closer towards the edges

@@ -12,13 +12,13 @@ import numpy as np
 from fabrics import random_general_row, skin_of, table
 from scipy.interpolate import BSpline
 
-from fabric_cad.edges import allowed_scaled_jacobian
 from fabric_cad.meshing.options import mesh_options
 from fabric_cad.meshing.plan import plan_yarns
 from fabric_cad.meshing.quality import Quality, hexahedra_quality
 from fabric_cad.model.identification import identify
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import yarns_of
+from fabric_cad.yarn.edges import allowed_scaled_jacobian
 
 
 def outline_of(fabric, plan):

@@ -157,7 +157,7 @@ DRAWS = {
 
 def skin_of(fabric, yarn):
     """The skin of one yarn of a fabric."""
-    from fabric_cad.sweeps import control_planes, control_sections, skin, trajectory
+    from fabric_cad.yarn.sweeps import control_planes, control_sections, skin, trajectory
 
     planes = control_planes(fabric, yarn)
     return skin(trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes))

@@ -26,9 +26,9 @@ from fabric_cad.model.solved import read_solved
 from fabric_cad.pipeline import make_cell
 from fabric_cad.plots import plot_edges
 from fabric_cad.support.errors import InputError
-from fabric_cad.sweeps import control_planes, control_sections, trajectory
-from fabric_cad.volumes import yarn_volumes
 from fabric_cad.weave.weaves import yarns_of
+from fabric_cad.yarn.sweeps import control_planes, control_sections, trajectory
+from fabric_cad.yarn.volumes import yarn_volumes
 
 FORMS = {
     "lenticular": {"weft_contact_top_mm": 2.3, "weft_offset_bottom_mm": 0.1},

@@ -5,9 +5,9 @@ import pytest
 from closed_meshes import closed_quality, general_fabric
 from meshes import box
 
-from fabric_cad.edges import allowed_scaled_jacobian
 from fabric_cad.meshing.options import mesh_options
 from fabric_cad.meshing.quality import hexahedra_quality, mesh_quality
+from fabric_cad.yarn.edges import allowed_scaled_jacobian
 
 CUBE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], dtype=float)
 

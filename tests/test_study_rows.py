@@ -21,8 +21,8 @@ from fabric_cad.study.rows import base_value, study_rows
 from fabric_cad.study.store import unit_key
 from fabric_cad.study.units import Work
 from fabric_cad.support.errors import InputError
-from fabric_cad.volumes import yarn_volumes
 from fabric_cad.weave.weaves import yarns_of
+from fabric_cad.yarn.volumes import yarn_volumes
 
 PLAIN = {"name": "base", "weft_density_per_mm": 0.22, "weft_width_mm": 3.2, "weft_crimp": 0.004}
 TWILL = PLAIN | {"over": 2, "under": 2}

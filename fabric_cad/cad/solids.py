@@ -12,7 +12,7 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_A
 
 from ..section.sections import Section
 from ..support.errors import BuildError
-from ..sweeps import Patch, Skin, Trajectory, skin
+from ..yarn.sweeps import Patch, Skin, Trajectory, skin
 
 _SEWING_TOLERANCE = 1e-7  # mm, OCCT's confusion; the edges sewn agree to rounding
 

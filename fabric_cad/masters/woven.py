@@ -12,8 +12,8 @@ import numpy as np
 
 from fabric_cad.cad import Cell, assemble, sweep
 from fabric_cad.model.solved import SolvedFabric
-from fabric_cad.sweeps import control_planes, control_sections, trajectory
 from fabric_cad.weave.weaves import yarns_of
+from fabric_cad.yarn.sweeps import control_planes, control_sections, trajectory
 
 
 def woven(fabric: SolvedFabric, weft_over_warp: np.ndarray) -> Cell:

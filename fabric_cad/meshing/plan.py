@@ -9,8 +9,8 @@ import numpy as np
 
 from ..model.solved import SolvedFabric
 from ..section.sections import Frame, Section
-from ..sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
 from ..weave.weaves import DIRECTIONS, Yarn
+from ..yarn.sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
 from .count import chord_ends, column_counts, lateral_count
 from .options import MeshOptions
 from .rings import Span, fill_rings

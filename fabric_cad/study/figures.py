@@ -12,8 +12,8 @@ from ..model.identification import Identified
 from ..model.plausibility import implausible
 from ..model.solved import point_columns
 from ..report import YARN_DATA
-from ..volumes import yarn_volumes
 from ..weave.weaves import DIRECTIONS
+from ..yarn.volumes import yarn_volumes
 
 HEADLINE = (
     "identified.fabric_thickness_mm",
@@ -75,7 +75,7 @@ def _text(value: object) -> object:
 def identified_figures(table: Family, found: Identified) -> dict[str, Sequence]:
     """The same figures of all fabrics of a table before there is any CAD: arrays or lists, shape (fabrics,).
 
-    Volumes are those of :mod:`fabric_cad.volumes`, in a cell as thick as the model's fabric.
+    Volumes are those of :mod:`fabric_cad.yarn.volumes`, in a cell as thick as the model's fabric.
     """
     solved, rows = found.columns, found.rows.tolist()
     weaves = tuple(table.weaves[at] for at in rows) if len(rows) < len(table) else table.weaves

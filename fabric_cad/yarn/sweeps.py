@@ -22,10 +22,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .model.solved import SolvedFabric
-from .section.sections import KINDS, Section, contact_section, free_section
-from .section.splines import Quadratic, Spline, as_cubic, line, quadratic_spline
-from .weave.weaves import Yarn
+from ..model.solved import SolvedFabric
+from ..section.sections import KINDS, Section, contact_section, free_section
+from ..section.splines import Quadratic, Spline, as_cubic, line, quadratic_spline
+from ..weave.weaves import Yarn
 
 
 @dataclass(frozen=True)

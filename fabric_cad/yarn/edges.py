@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from .model.solved import SolvedFabric
-from .section.sections import Section
-from .section.splines import Spline
+from ..model.solved import SolvedFabric
+from ..section.sections import Section
+from ..section.splines import Spline
+from ..weave.weaves import yarns_of
 from .sweeps import control_planes, control_sections, trajectory
-from .weave.weaves import yarns_of
 
 _SAMPLES = 257
 
