@@ -556,7 +556,7 @@ def _show_row(settings, name: str) -> None:
         settings.deck = "calculix"
         _make_cell(settings, name)
     from .meshing.mesher import read_mesh
-    from .views import show_cell
+    from .pictures.views import show_cell
 
     show_cell(read_mesh(mesh_file), name)
 

@@ -165,7 +165,7 @@ def skin_of(fabric, yarn):
 
 def section_area(section) -> float:
     """Area of a section, mm2, by Green's theorem along its outline (exact for parabolas)."""
-    from fabric_cad.plots import section_outline
+    from fabric_cad.pictures.plots import section_outline
 
     v, z = section_outline(section, 4001)
     return float(np.sum(v[:-1] * z[1:] - v[1:] * z[:-1]) / 2)

@@ -90,7 +90,9 @@ def try_fabric(seed: int, part: str) -> Outcome:
     """One random fabric through the pipeline in a process of its own."""
     context = multiprocessing.get_context("forkserver" if sys.platform != "win32" else "spawn")
     if sys.platform != "win32":
-        context.set_forkserver_preload(["fabric_cad.cad", "fabric_cad.masters.woven", "fabric_cad.views", "gmsh"])
+        context.set_forkserver_preload(
+            ["fabric_cad.cad", "fabric_cad.masters.woven", "fabric_cad.pictures.views", "gmsh"]
+        )
     receive, send = context.Pipe(duplex=False)
     process = context.Process(target=_child, args=(seed, part, send))
     process.start()

@@ -32,7 +32,7 @@ from fabric_cad.comparison import (
     yarn_volume,
 )
 from fabric_cad.model.identification import identify
-from fabric_cad.plots import plot_gap_maps, plot_model_cuts
+from fabric_cad.pictures.plots import plot_gap_maps, plot_model_cuts
 from fabric_cad.support.errors import BuildError, InputError
 from fabric_cad.weave.weaves import yarns_of
 

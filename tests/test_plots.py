@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from fabric_cad.plots import plot_crushing, plot_shear_curve, plot_tension_curves, plot_tension_surface, save_figure
-from fabric_cad.views import Outline
+from fabric_cad.pictures.plots import (
+    plot_crushing,
+    plot_shear_curve,
+    plot_tension_curves,
+    plot_tension_surface,
+    save_figure,
+)
+from fabric_cad.pictures.views import Outline
 
 RATIOS = (0.0, 0.5, 1.0, 2.0, np.inf)
 

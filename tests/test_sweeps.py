@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from fabric_cad.model.identification import identify
-from fabric_cad.plots import section_outline
+from fabric_cad.pictures.plots import section_outline
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import Weave, yarns_of
 from fabric_cad.yarn.sweeps import contact_segment, control_planes, control_sections, trajectory

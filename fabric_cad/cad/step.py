@@ -24,8 +24,8 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 from OCP.XSControl import XSControl_WorkSession
 
 from .. import __version__
-from ..colours import COLOURS
 from ..support.errors import BuildError
+from ..weave.colours import COLOURS
 from ..weave.weaves import direction_of
 
 _NO_TIME = "1970-01-01T00:00:00"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..plots import plot_sensitivity, save_figure
+from ..pictures.plots import plot_sensitivity, save_figure
 
 _ACROSS = 3  # figures side by side
 

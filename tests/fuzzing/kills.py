@@ -33,8 +33,8 @@ def load_cad() -> None:
     import fabric_cad.masters
     import fabric_cad.meshing.mesher
     import fabric_cad.model.identification
+    import fabric_cad.pictures.views  # noqa: F401
     import fabric_cad.report
-    import fabric_cad.views  # noqa: F401
 
 
 class Place:

@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from ..meshing.mesh import Mesh
+from ...meshing.mesh import Mesh
 from .library import checked
 from .vtu import pyvista_grid, write_grid
 

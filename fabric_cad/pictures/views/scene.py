@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..colours import COLOURS
-from ..meshing.mesh import Mesh
-from ..weave.weaves import DIRECTIONS, direction_of
+from ...meshing.mesh import Mesh
+from ...weave.colours import COLOURS
+from ...weave.weaves import DIRECTIONS, direction_of
 from .library import pyvista
 from .skin import Skin, skin_of
 

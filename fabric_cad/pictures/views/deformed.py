@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..meshing.mesh import Mesh
+from ...meshing.mesh import Mesh
 from .library import checked
 from .limits import limits_of
 from .scene import EDGE, SIZE, add_lines, add_yarns, finish, new_scene, offscreen, save, surface

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..meshing.mesh import Mesh
-from ..meshing.quality import Quality
-from ..support.interrupts import uninterrupted
-from ..weave.weaves import DIRECTIONS, direction_of
+from ...meshing.mesh import Mesh
+from ...meshing.quality import Quality
+from ...support.interrupts import uninterrupted
+from ...weave.weaves import DIRECTIONS, direction_of
 from .library import pyvista
 
 

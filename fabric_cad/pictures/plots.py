@@ -13,14 +13,14 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import BSpline, CloughTocher2DInterpolator
 
-from .colours import COLOURS
-from .comparison import MODELS, TOLERANCE, Model, crossing_gap
-from .model.solved import SolvedFabric, point_columns
-from .section.sections import KINDS, Section, contact_section, free_section
-from .section.splines import Spline
-from .simulation.penetration import valid_until
-from .weave.weaves import DIRECTIONS, Yarn, direction_of, yarns_of
-from .yarn.sweeps import control_planes, control_sections, trajectory
+from ..comparison import MODELS, TOLERANCE, Model, crossing_gap
+from ..model.solved import SolvedFabric, point_columns
+from ..section.sections import KINDS, Section, contact_section, free_section
+from ..section.splines import Spline
+from ..simulation.penetration import valid_until
+from ..weave.colours import COLOURS
+from ..weave.weaves import DIRECTIONS, Yarn, direction_of, yarns_of
+from ..yarn.sweeps import control_planes, control_sections, trajectory
 
 _POINTS = 41
 _ACROSS = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 301)) / 2  # of a width, closer towards the edges
@@ -344,7 +344,7 @@ def plot_shear_curve(columns: Mapping[str, Sequence[float]], axes=None, allowed:
 def plot_crushing(cuts: Mapping[str, Sequence], scale: float, axes=None, stretch: float = 3.0):
     """Cuts of a cell under load, filled, over the cell at rest, dashed (Fig. 22c); the figure.
 
-    ``cuts`` maps the yarn each runs along to its :class:`fabric_cad.views.Outline` list; an axes each.
+    ``cuts`` maps the yarn each runs along to its :class:`fabric_cad.pictures.views.Outline` list; an axes each.
     Displacements are drawn ``scale`` times and z ``stretch`` times larger, which the picture says.
     """
     shapes = [np.ptp(np.vstack([cut.rest for cut in outlines]), axis=0) for outlines in cuts.values()]

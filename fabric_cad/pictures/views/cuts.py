@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..meshing.mesh import Mesh
-from ..weave.weaves import DIRECTIONS, direction_of
+from ...meshing.mesh import Mesh
+from ...weave.weaves import DIRECTIONS, direction_of
 from .library import checked
 from .vtu import grid_of
 

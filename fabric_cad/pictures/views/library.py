@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..support.interrupts import uninterrupted
+from ...support.interrupts import uninterrupted
 
 
 def pyvista():
