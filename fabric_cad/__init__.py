@@ -35,7 +35,7 @@ _FROM = {
     "mesh_options": "meshing",
     "Mesh": "meshing",
     "MeshOptions": "meshing",
-    "make_cell": "pipeline",
+    "make_cell": "cell.pipeline",
     "make_tension": "simulation.run",
     "make_shear": "simulation.run",
     "Solver": "simulation.job",

@@ -444,9 +444,9 @@ def _each_row(settings, work: Callable[[str], None]) -> int:
 
 def _row(settings, name: str):
     """The table of one row, warned of; what is wrong with other rows and tables is told once."""
+    from .cell.pipeline import find_row
     from .model.identification import identify
     from .model.plausibility import implausible
-    from .pipeline import find_row
 
     row, others = find_row(settings.families, name)
     told = vars(settings).setdefault("told", set())
@@ -471,11 +471,11 @@ def _cell(settings) -> int:
 
 
 def _make_cell(settings, name: str) -> None:
+    from .cell.pipeline import Stages, make_cell
+    from .cell.report import summary
     from .meshing.count import hexahedra
     from .meshing.options import mesh_options
     from .model.identification import identify
-    from .pipeline import Stages, make_cell
-    from .report import summary
 
     row = _row(settings, name)
     if not settings.quiet:
@@ -521,7 +521,7 @@ def _shear(settings) -> int:
 
 def _simulate(settings, name: str, kind: str, make) -> None:
     """Run a case of one row, or write its deck alone."""
-    from .pipeline import Stages
+    from .cell.pipeline import Stages
     from .simulation.job import Solver
     from .simulation.report import summary
     from .simulation.run import write_case

@@ -61,7 +61,7 @@ class Outcome:
 
 
 def _child(seed: int, part: str, pipe) -> None:
-    from fabric_cad.pipeline import Stages, make_cell
+    from fabric_cad.cell.pipeline import Stages, make_cell
     from fabric_cad.support.errors import InputError
 
     reached = ["table"]

@@ -16,13 +16,13 @@ from PIL import Image
 
 import fabric_cad
 from fabric_cad import mesh_options
+from fabric_cad.cell.pipeline import find_row, make_cell
+from fabric_cad.cell.traces import renew_digests
 from fabric_cad.cli import shipped_families
 from fabric_cad.measured.tables import read_families
 from fabric_cad.meshing.count import hexahedra
 from fabric_cad.model.solved import read_solved
-from fabric_cad.pipeline import find_row, make_cell
 from fabric_cad.support.staging import staged
-from fabric_cad.traces import renew_digests
 from fabric_cad.weave.weaves import yarns_of
 from fabric_cad.yarn.edges import allowed_scaled_jacobian
 from fabric_cad.yarn.sweeps import contact_patches, control_planes, control_sections, skin, trajectory

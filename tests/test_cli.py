@@ -99,7 +99,7 @@ def test_help_is_the_manual(capsys):
 def test_a_row_of_a_sound_table_is_made_beside_a_wrong_one(here, capsys, monkeypatch):
     Path("families/twill.csv").write_text(f"{HEADER}\nbad,3,2,0.35,2.9,0.004\n")
     made = []
-    monkeypatch.setattr("fabric_cad.pipeline.make_cell", lambda row, *rest: made.append(row.names) or _report())
+    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or _report())
     assert main(["cell", "plain"]) == 0
     assert made == [("plain",)]
     assert "note, in a table this row is not of: families/twill.csv:2" in capsys.readouterr().err
@@ -171,7 +171,7 @@ def test_a_missing_system_library_is_named(here, monkeypatch, capsys):
     def load(*_):
         raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
 
-    monkeypatch.setattr("fabric_cad.pipeline.make_cell", load)
+    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", load)
     assert main(["cell", "plain", "-q"]) == 1
     assert capsys.readouterr().err.startswith("the system lacks the library libGL.so.1; the README lists")
 

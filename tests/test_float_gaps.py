@@ -20,11 +20,11 @@ from matplotlib.figure import Figure
 from scipy.interpolate import BSpline
 from test_sweeps import fabric_of, patch_of, points, seeds
 
+from fabric_cad.cell.pipeline import make_cell
 from fabric_cad.measured.tables import FLOAT_GAPS
 from fabric_cad.model.identification import identify, identify_rows
 from fabric_cad.model.solved import read_solved
 from fabric_cad.pictures.plots import plot_edges
-from fabric_cad.pipeline import make_cell
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import yarns_of
 from fabric_cad.yarn.sweeps import control_planes, control_sections, trajectory

@@ -120,6 +120,6 @@ def test_a_mesher_that_fails_says_why(monkeypatch, tmp_path, error, words):
 def test_the_command_foretells(here, capsys, monkeypatch):
     from test_cli import _report
 
-    monkeypatch.setattr("fabric_cad.pipeline.make_cell", lambda *_: _report())
+    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda *_: _report())
     assert main(["cell", "twill32"]) == 0
     assert "  17600 hexahedra to make\n" in capsys.readouterr().err

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fabrics import TWILL32, UNBALANCED, table
 
+from fabric_cad.cell.report import check_report
 from fabric_cad.cli import main
 from fabric_cad.model.identification import identify, identify_rows
 from fabric_cad.model.plausibility import (
@@ -19,7 +20,6 @@ from fabric_cad.model.plausibility import (
     doubtful_report,
     implausible,
 )
-from fabric_cad.report import check_report
 from fabric_cad.support.errors import BuildError, InputError
 
 HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp,weft_thickness_mm"

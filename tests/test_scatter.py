@@ -372,7 +372,7 @@ def test_validation_loads_no_more_than_it_needs():
 
 
 def test_the_report_holds_standard_deviations(tmp_path):
-    from fabric_cad.pipeline import make_cell
+    from fabric_cad.cell.pipeline import make_cell
 
     row = TWILL32 | {"weft_crimp_std": 0.0003, "weft_width_mm_std": 0.02}
     found = make_cell(table("twill", row), tmp_path, {"size": 0.6})["identified"]

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 from scipy.integrate import quad
 
+from fabric_cad.cell.pipeline import Stages, checked_report, make_step
 from fabric_cad.measured.bounds import out_of_bounds
 from fabric_cad.measured.tables import FLOAT_GAPS
 from fabric_cad.model.identification import identify, identify_rows
-from fabric_cad.pipeline import Stages, checked_report, make_step
 from fabric_cad.study.design import DESIGNS, Samples
 from fabric_cad.study.factors import Values
 from fabric_cad.study.figures import flat, identified_figures

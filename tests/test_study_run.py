@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from jobs import needs_ccx
 
+from fabric_cad.cell.pipeline import find_row, make_cell
 from fabric_cad.cli import main
 from fabric_cad.model.identification import identify_rows
-from fabric_cad.pipeline import find_row, make_cell
 from fabric_cad.study import read_study, run_study
 from fabric_cad.study.figures import identified_figures
 from fabric_cad.study.names import figure_names

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from fabric_cad.cell.pipeline import find_row
 from fabric_cad.cli import main
 from fabric_cad.measured.tables import WEAVE_COLUMNS, read_families, read_family
-from fabric_cad.pipeline import find_row
 from fabric_cad.support.errors import ArgumentError, InputError, Problem, UnknownRowError
 
 HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp"
@@ -68,8 +68,8 @@ def test_list_shows_sound_rows_and_names_the_wrong(here, capsys):
 def test_a_wrong_row_stops_its_own_cell_only(here, capsys, monkeypatch, wrong):
     write("families", wrong, GOOD)
     made = []
-    monkeypatch.setattr("fabric_cad.pipeline.make_cell", lambda row, *rest: made.append(row.names) or {})
-    monkeypatch.setattr("fabric_cad.report.summary", lambda report: "made")
+    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or {})
+    monkeypatch.setattr("fabric_cad.cell.report.summary", lambda report: "made")
     assert main(["cell", "good"]) == 0 and made == [("good",)]
     monkeypatch.undo()
     capsys.readouterr()

@@ -41,7 +41,7 @@ def made(monkeypatch):
         names.append(name)
         return _report() | {"row": name}
 
-    monkeypatch.setattr("fabric_cad.pipeline.make_cell", make_cell)
+    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", make_cell)
     return names
 
 
@@ -173,6 +173,6 @@ def test_memory_that_runs_out_is_told_as_such(here, monkeypatch, capsys):
     def make_cell(*_):
         raise MemoryError
 
-    monkeypatch.setattr("fabric_cad.pipeline.make_cell", make_cell)
+    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", make_cell)
     assert main(["cell", "plain", "-q"]) == 1
     assert capsys.readouterr().err == "out of memory; earlier results are as they were\n"

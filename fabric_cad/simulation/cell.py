@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from ..cell.pipeline import Stages, checked_report, make_mesh, make_step
 from ..measured.tables import Family
 from ..meshing.mesh import Mesh
 from ..meshing.options import MeshOptions, mesh_options
 from ..model.solved import SolvedFabric
-from ..pipeline import Stages, checked_report, make_mesh, make_step
 from .settings import Settings
 
 

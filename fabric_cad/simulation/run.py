@@ -14,12 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ..cell.pipeline import Stages
+from ..cell.traces import renew_digests, trace, write_traced
 from ..decks.model import Load
 from ..measured.tables import Family
-from ..pipeline import Stages
 from ..support.errors import SolverError
 from ..support.staging import staged
-from ..traces import renew_digests, trace, write_traced
 from .cell import loaded_cell
 from .job import Job, Reached, Solver, at_rest, condition, run_job, write_model
 from .penetration import valid_until

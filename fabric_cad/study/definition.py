@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..cell.pipeline import find_row
 from ..measured.tables import FLOAT_GAPS, MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
-from ..pipeline import find_row
 from ..simulation.settings import Settings, read_settings
 from ..support.errors import InputError, Problem, did_you_mean, quoted
 from ..support.toml_files import read_toml

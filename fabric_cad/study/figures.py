@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ..cell.report import YARN_DATA
 from ..measured.tables import Family
 from ..model.closing import CLOSING
 from ..model.identification import Identified
 from ..model.plausibility import implausible
 from ..model.solved import point_columns
-from ..report import YARN_DATA
 from ..weave.weaves import DIRECTIONS
 from ..yarn.volumes import yarn_volumes
 
@@ -163,7 +163,7 @@ def _volumes(table: Family, found: Identified, weaves, wefts, warps) -> dict[str
 
 
 def _yarn_data(table: Family, rows: np.ndarray) -> dict[str, np.ndarray]:
-    """:func:`fabric_cad.report.yarn_data` of many rows, NaN where not given."""
+    """:func:`fabric_cad.cell.report.yarn_data` of many rows, NaN where not given."""
     found = {name: table.measured[name][rows] for name in YARN_DATA}
     weft, warp = (found[f"{d}_linear_density_tex"] for d in DIRECTIONS)
     return found | {"warp_linear_density_tex": np.where(table.balanced[rows], weft, warp)}

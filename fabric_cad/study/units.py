@@ -14,13 +14,13 @@ from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
 
+from ..cell.pipeline import Stages, checked_report, make_mesh, make_step, write_report
+from ..cell.traces import trace
 from ..measured.tables import Family
-from ..pipeline import Stages, checked_report, make_mesh, make_step, write_report
 from ..simulation.settings import Settings
 from ..support.errors import FabricCadError, InputError, SolverError
 from ..support.staging import output_errors, staged
 from ..support.working import scratch_folder
-from ..traces import trace
 from .figures import flat
 
 

@@ -29,12 +29,12 @@ CELL_LIMIT = 120.0  # s
 def load_cad() -> None:
     """Load what a cell takes, so that a fork of this process has it at once."""
     import fabric_cad.cad
+    import fabric_cad.cell.report
     import fabric_cad.decks.cell
     import fabric_cad.masters
     import fabric_cad.meshing.mesher
     import fabric_cad.model.identification
     import fabric_cad.pictures.views  # noqa: F401
-    import fabric_cad.report
 
 
 class Place:

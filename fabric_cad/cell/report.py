@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .measured.tables import Family
-from .meshing.mesh import Mesh
-from .model.plausibility import LEAST_JACOBIAN
-from .model.solved import Direction, SolvedFabric, point_columns
-from .support.errors import BuildError
-from .weave.weaves import Weave
+from ..measured.tables import Family
+from ..meshing.mesh import Mesh
+from ..model.plausibility import LEAST_JACOBIAN
+from ..model.solved import Direction, SolvedFabric, point_columns
+from ..support.errors import BuildError
+from ..weave.weaves import Weave
 
 COINCIDENT = 1e-9
 """Distance (mm) up to which two nodes, or two faces, count as at the same place."""
@@ -70,7 +70,7 @@ def cell_report(
     """The content of ``report.json``; lengths mm.
 
     ``consistency`` is what :func:`fabric_cad.cad.inspect_cell` measured on the STEP,
-    ``meshed`` (None: no mesh was made) what :func:`fabric_cad.pipeline.make_mesh` read from the mesh file,
+    ``meshed`` (None: no mesh was made) what :func:`fabric_cad.cell.pipeline.make_mesh` read from the mesh file,
     ``yarn_data`` holds
     ``weft_linear_density_tex``, ``warp_linear_density_tex`` and ``fibre_density_g_cm3``,
     ``std`` the standard deviations of the columns of ``row`` where its measurements have any.

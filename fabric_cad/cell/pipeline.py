@@ -10,20 +10,20 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .measured.table_files import stray_tables
-from .measured.tables import Family, expect_row, read_families
-from .model.identification import identify
-from .model.scatter import propagate
-from .model.solved import SolvedFabric, SolvedTable, read_solved
-from .support.errors import InputError, Problem, did_you_mean, quoted
-from .support.interrupts import uninterrupted
-from .support.staging import staged
-from .yarn.sweeps import contact_patches
+from ..measured.table_files import stray_tables
+from ..measured.tables import Family, expect_row, read_families
+from ..model.identification import identify
+from ..model.scatter import propagate
+from ..model.solved import SolvedFabric, SolvedTable, read_solved
+from ..support.errors import InputError, Problem, did_you_mean, quoted
+from ..support.interrupts import uninterrupted
+from ..support.staging import staged
+from ..yarn.sweeps import contact_patches
 
 if TYPE_CHECKING:
-    from .cad import Consistency
-    from .meshing import Mesh, MeshOptions
-    from .meshing.quality import Quality
+    from ..cad import Consistency
+    from ..meshing import Mesh, MeshOptions
+    from ..meshing.quality import Quality
 
 
 @dataclass
@@ -100,8 +100,8 @@ def make_step(row: Family, folder: Path, stages: Stages) -> Made:
         table.write(folder / "solved.csv")
         fabric = read_solved(folder / "solved.csv")
     with stages("load CadQuery"), uninterrupted():
-        from .cad import inspect_cell, read_step
-        from .masters import build_cell
+        from ..cad import inspect_cell, read_step
+        from ..masters import build_cell
     step = folder / f"{name}.step"
     with stages("solids"):
         cell = build_cell(fabric)
@@ -117,21 +117,21 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
     msh = made.step.with_suffix(".msh")
     with stages("mesh"):
         with uninterrupted():
-            from .meshing.mesher import mesh_cell, read_mesh
+            from ..meshing.mesher import mesh_cell, read_mesh
 
         mesh_cell(made.step, made.fabric, options, msh)
         mesh = read_mesh(msh)
     with stages("quality"):
         with uninterrupted():
-            from .meshing.quality import mesh_quality
-            from .yarn.edges import allowed_scaled_jacobian
+            from ..meshing.quality import mesh_quality
+            from ..yarn.edges import allowed_scaled_jacobian
 
         return Meshed(mesh, mesh_quality(mesh), allowed_scaled_jacobian(made.fabric))
 
 
 def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> dict:
     """The report of what was made. Raises :class:`BuildError` where it shows a cell that is not consistent."""
-    from .model.plausibility import doubtful_report, implausible
+    from ..model.plausibility import doubtful_report, implausible
     from .report import cell_report, check_report, yarn_data
 
     report = cell_report(
@@ -169,7 +169,7 @@ def make_cell(
     :func:`fabric_cad.meshing.mesh_options`. Raises :class:`FabricCadError`; the folder then
     is as it was.
     """
-    from .meshing.options import mesh_options
+    from ..meshing.options import mesh_options
     from .traces import trace
 
     expect_row(row)
@@ -182,10 +182,10 @@ def make_cell(
         meshed = make_mesh(made, options, stages)
         with stages("write deck"):
             with uninterrupted():
-                from .decks.cell import write_deck
+                from ..decks.cell import write_deck
 
             write_deck(meshed.mesh, folder / f"{name}.inp", f"elementary cell of {name}", dialect)
-        from .pictures.views import draw_cell, write_vtu
+        from ..pictures.views import draw_cell, write_vtu
 
         with stages("write vtu"):
             write_vtu(meshed.mesh, meshed.quality, folder / f"{name}.vtu")

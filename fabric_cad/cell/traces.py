@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from . import __version__
-from .measured.columns import WEAVE_COLUMNS
-from .measured.tables import Family
-from .meshing.options import MeshOptions
+from .. import __version__
+from ..measured.columns import WEAVE_COLUMNS
+from ..measured.tables import Family
+from ..meshing.options import MeshOptions
 
 REPORT = "report.json"
 
