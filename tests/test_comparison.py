@@ -13,7 +13,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import fabric_cad
-from fabric_cad.comparison import (
+from fabric_cad.comparison.models import (
     MODELS,
     TOLERANCE,
     Model,
@@ -241,7 +241,7 @@ def test_the_pictures_are_drawn(twill):
 
 def test_comparing_loads_no_cad_and_no_pictures():
     absent = ("cadquery", "OCP", "gmsh", "scipy", "matplotlib")
-    code = f"import sys, fabric_cad.comparison; print([name for name in {absent!r} if name in sys.modules])"
+    code = f"import sys, fabric_cad.comparison.models; print([name for name in {absent!r} if name in sys.modules])"
     place = Path(fabric_cad.__file__).parents[1]
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=place, check=True)
     assert done.stdout.strip() == "[]"

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import BSpline, CloughTocher2DInterpolator
 
-from ..comparison import MODELS, TOLERANCE, Model, crossing_gap
+from ..comparison.models import MODELS, TOLERANCE, Model, crossing_gap
 from ..model.solved import SolvedFabric, point_columns
 from ..section.sections import KINDS, Section, contact_section, free_section
 from ..section.splines import Spline
@@ -202,7 +202,7 @@ def _on_axis(section: Section, side: str) -> float:
 
 
 def plot_model_cuts(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 1, stretch: float = 3.0) -> None:
-    """The same cut along a yarn's axis for every model of :data:`fabric_cad.comparison.MODELS`, one each on ``axes``.
+    """The same cut along a yarn's axis for every model of :data:`fabric_cad.comparison.models.MODELS`, one each on ``axes``.
 
     Penetrations are red, voids white; z is drawn ``stretch`` times larger.
     """
@@ -232,7 +232,7 @@ def _model_cut(fabric: SolvedFabric, model: Model, axes, direction: str, number:
 
 
 def plot_gap_maps(fabric: SolvedFabric, axes, weft: int = 1, warp: int = 1):
-    """The gap over one crossing for every model of :data:`fabric_cad.comparison.MODELS`, one each on ``axes``.
+    """The gap over one crossing for every model of :data:`fabric_cad.comparison.models.MODELS`, one each on ``axes``.
 
     Penetrations are red, voids blue; a line goes around where the yarns touch. Returns the last
     map, for a colour bar; the colours end at a quarter of the thinner yarn's thickness.

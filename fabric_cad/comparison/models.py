@@ -28,10 +28,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .model.solved import Direction, SolvedFabric
-from .support.errors import BuildError
-from .weave.weaves import Yarn, yarns_of
-from .yarn.sweeps import control_planes, control_sections, skin, trajectory
+from ..model.solved import Direction, SolvedFabric
+from ..support.errors import BuildError
+from ..weave.weaves import Yarn, yarns_of
+from ..yarn.sweeps import control_planes, control_sections, skin, trajectory
 
 POINTS = 192
 """Points of the grid along either side of a crossing: volumes are then right to 0.1 %, the
