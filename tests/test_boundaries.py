@@ -52,7 +52,10 @@ def test_heavy_packages_stay_behind_their_doors(path):
             "import fabric_cad; fabric_cad.run_study",
             ("cadquery", "OCP", "gmsh", "scipy", "pyvista", "dask", "distributed", "pyarrow", "matplotlib"),
         ),
-        ("from fabric_cad.cli import main; main(['list', '-q'])", ("cadquery", "OCP", "gmsh", "scipy", "pyvista")),
+        (
+            "from fabric_cad.cli.command import main; main(['list', '-q'])",
+            ("cadquery", "OCP", "gmsh", "scipy", "pyvista"),
+        ),
     ],
 )
 def test_what_is_loaded_when(statement, absent):

@@ -10,11 +10,12 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from . import __version__, terminal
-from .support.errors import FabricCadError, InputError, OutputError, did_you_mean, quoted
-from .support.interrupts import stoppable
-from .support.numerals import number, whole
-from .support.staging import commits, staged, standing
+from .. import __version__
+from ..support.errors import FabricCadError, InputError, OutputError, did_you_mean, quoted
+from ..support.interrupts import stoppable
+from ..support.numerals import number, whole
+from ..support.staging import commits, staged, standing
+from . import terminal
 from .terminal import complain, say
 
 _DESCRIPTION = """\
@@ -254,7 +255,7 @@ class _Progress:
 
     def solver(self, at) -> None:
         """A case before its first state, or an increment, as :class:`fabric_cad.simulation.progress.CaseProgress`."""
-        from .simulation.progress import announced, told
+        from ..simulation.progress import announced, told
 
         if self.quiet:
             return
@@ -270,9 +271,9 @@ def _tables(settings, partial: bool = False) -> tuple[dict, list[InputError]]:
 
     With ``partial`` a table that can be read is there without its wrong rows, whose errors are told.
     """
-    from .measured.table_files import stray_tables
-    from .measured.tables import read_families
-    from .model.identification import identify, identify_rows
+    from ..measured.table_files import stray_tables
+    from ..measured.tables import read_families
+    from ..model.identification import identify, identify_rows
 
     solved, errors = {}, []
     for family, table in read_families(settings.families, partial).items():
@@ -347,7 +348,7 @@ def _solve(settings) -> int:
 
 def _warn_of(settings, solved: dict) -> None:
     """Warn of what is seldom true of a fabric, in all rows of solved tables."""
-    from .model.plausibility import implausible
+    from ..model.plausibility import implausible
 
     for measured, table in solved.values():
         _warn(settings, map(str, implausible(measured, table.columns)))
@@ -379,8 +380,8 @@ def _print_notes(table) -> None:
 
 
 def _validate(settings) -> int:
-    from .model.scatter import doubts, propagate
-    from .model.validation import compared, spread_out
+    from ..model.scatter import doubts, propagate
+    from ..model.validation import compared, spread_out
 
     solved, errors = _tables(settings)
     comparisons, spreads, notes, worst = [], [], [], []
@@ -444,9 +445,9 @@ def _each_row(settings, work: Callable[[str], None]) -> int:
 
 def _row(settings, name: str):
     """The table of one row, warned of; what is wrong with other rows and tables is told once."""
-    from .cell.pipeline import find_row
-    from .model.identification import identify
-    from .model.plausibility import implausible
+    from ..cell.pipeline import find_row
+    from ..model.identification import identify
+    from ..model.plausibility import implausible
 
     row, others = find_row(settings.families, name)
     told = vars(settings).setdefault("told", set())
@@ -471,11 +472,11 @@ def _cell(settings) -> int:
 
 
 def _make_cell(settings, name: str) -> None:
-    from .cell.pipeline import Stages, make_cell
-    from .cell.report import summary
-    from .meshing.count import hexahedra
-    from .meshing.options import mesh_options
-    from .model.identification import identify
+    from ..cell.pipeline import Stages, make_cell
+    from ..cell.report import summary
+    from ..meshing.count import hexahedra
+    from ..meshing.options import mesh_options
+    from ..model.identification import identify
 
     row = _row(settings, name)
     if not settings.quiet:
@@ -508,25 +509,25 @@ def _positive(kind):
 
 
 def _tension(settings) -> int:
-    from .simulation.run import make_tension
+    from ..simulation.run import make_tension
 
     return _each_row(settings, lambda name: _simulate(settings, name, "tension", make_tension))
 
 
 def _shear(settings) -> int:
-    from .simulation.run import make_shear
+    from ..simulation.run import make_shear
 
     return _each_row(settings, lambda name: _simulate(settings, name, "shear", make_shear))
 
 
 def _simulate(settings, name: str, kind: str, make) -> None:
     """Run a case of one row, or write its deck alone."""
-    from .cell.pipeline import Stages
-    from .simulation.job import Solver
-    from .simulation.report import summary
-    from .simulation.run import write_case
-    from .simulation.solver import find_solver
-    from .support.cores import cores
+    from ..cell.pipeline import Stages
+    from ..simulation.job import Solver
+    from ..simulation.report import summary
+    from ..simulation.run import write_case
+    from ..simulation.solver import find_solver
+    from ..support.cores import cores
 
     row = _row(settings, name)
     progress = _Progress(settings.quiet)
@@ -555,16 +556,16 @@ def _show_row(settings, name: str) -> None:
     if not mesh_file.exists():
         settings.deck = "calculix"
         _make_cell(settings, name)
-    from .meshing.mesher import read_mesh
-    from .pictures.views import show_cell
+    from ..meshing.mesher import read_mesh
+    from ..pictures.views import show_cell
 
     show_cell(read_mesh(mesh_file), name)
 
 
 def _study(settings) -> int:
-    from .study import read_study, run_study
-    from .study.answer import answer_lines, reasons_lines
-    from .study.sensitivity import read_sensitivities
+    from ..study import read_study, run_study
+    from ..study.answer import answer_lines, reasons_lines
+    from ..study.sensitivity import read_sensitivities
 
     study = read_study(settings.file, settings.families)
     progress = _Units(settings.quiet)
@@ -620,7 +621,7 @@ def _count(text: str) -> int:
 
 
 def _wif(settings) -> int:
-    from .measured.wif import wif_row
+    from ..measured.wif import wif_row
 
     say(wif_row(settings.draft, settings.name), end="")
     return 0
@@ -634,7 +635,7 @@ def shipped_families() -> Path:
 
 def _other_form(table: Path) -> Path:
     """The file, or the workbook that holds the same table."""
-    from .measured.table_files import WORKBOOKS
+    from ..measured.table_files import WORKBOOKS
 
     forms = [table.with_suffix(suffix) for suffix in WORKBOOKS] if table.suffix == ".csv" else []
     return next((form for form in forms if form.exists()), table)

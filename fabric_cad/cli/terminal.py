@@ -6,7 +6,7 @@ import io
 import os
 import sys
 
-from .support.errors import OutputError
+from ..support.errors import OutputError
 
 
 def prepare() -> None:
