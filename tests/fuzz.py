@@ -70,10 +70,10 @@ def _load(part: str) -> None:
 
 
 def _load_light() -> None:
-    import fabric_cad.measured.wif  # noqa: F401
+    import fabric_cad.measured.wif
     import fabric_cad.model.identification
     import fabric_cad.model.scatter
-    import fabric_cad.study.run
+    import fabric_cad.study.run  # noqa: F401
 
 
 def _try(of: tuple[str, int]) -> Result:

@@ -90,9 +90,7 @@ def try_fabric(seed: int, part: str) -> Outcome:
     """One random fabric through the pipeline in a process of its own."""
     context = multiprocessing.get_context("forkserver" if sys.platform != "win32" else "spawn")
     if sys.platform != "win32":
-        context.set_forkserver_preload(
-            ["fabric_cad.cad", "fabric_cad.masters.woven", "fabric_cad.pictures.views", "gmsh"]
-        )
+        context.set_forkserver_preload(["fabric_cad.cad", "fabric_cad.masters.woven", "fabric_cad.pictures", "gmsh"])
     receive, send = context.Pipe(duplex=False)
     process = context.Process(target=_child, args=(seed, part, send))
     process.start()

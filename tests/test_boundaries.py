@@ -14,13 +14,13 @@ DOORS = {
     "cadquery": {"cad", "masters"},
     "OCP": {"cad"},
     "gmsh": {"meshing/mesher.py"},
-    "pyvista": {"views"},
-    "vtkmodules": {"views"},
+    "pyvista": {"support/vtk.py"},
+    "vtkmodules": {"support/vtk.py"},
     "dask": {"study/engine.py"},
     "distributed": {"study/engine.py"},
     "pyarrow": {"study/table.py"},
     "meshio": {"meshing/exchange.py"},
-    "python_calamine": {"workbooks.py"},
+    "python_calamine": {"measured/workbooks.py"},
 }
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from fabrics import TWILL32, random_general_row, random_row, table
 
-from fabric_cad.cli.command import main
+from fabric_cad.cli import main
 from fabric_cad.meshing import mesher
 from fabric_cad.meshing.count import hexahedra, needed_memory
 from fabric_cad.meshing.options import MOST, MeshOptions, mesh_options

@@ -9,7 +9,7 @@ import pytest
 from fabrics import TWILL32, UNBALANCED, table
 
 from fabric_cad.cell.report import check_report
-from fabric_cad.cli.command import main
+from fabric_cad.cli import main
 from fabric_cad.model.identification import identify, identify_rows
 from fabric_cad.model.plausibility import (
     DENSEST,

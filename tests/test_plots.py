@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from fabric_cad.pictures import Outline
 from fabric_cad.pictures.plots import (
     plot_crushing,
     plot_shear_curve,
@@ -11,7 +12,6 @@ from fabric_cad.pictures.plots import (
     plot_tension_surface,
     save_figure,
 )
-from fabric_cad.pictures.views import Outline
 
 RATIOS = (0.0, 0.5, 1.0, 2.0, np.inf)
 

@@ -16,7 +16,7 @@ import pytest
 from jobs import needs_ccx
 
 from fabric_cad.cell.pipeline import find_row, make_cell
-from fabric_cad.cli.command import main
+from fabric_cad.cli import main
 from fabric_cad.model.identification import identify_rows
 from fabric_cad.study import read_study, run_study
 from fabric_cad.study.figures import identified_figures

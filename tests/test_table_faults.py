@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from fabric_cad.cell.pipeline import find_row
-from fabric_cad.cli.command import main
+from fabric_cad.cli import main
 from fabric_cad.measured.tables import WEAVE_COLUMNS, read_families, read_family
 from fabric_cad.support.errors import ArgumentError, InputError, Problem, UnknownRowError
 

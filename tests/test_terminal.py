@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from test_cli import HEADER, _report
 
-from fabric_cad.cli.command import main
+from fabric_cad.cli import main
 from fabric_cad.support import staging
 from fabric_cad.support.errors import BuildError, InputError, OutputError
 

@@ -12,11 +12,11 @@ from fabrics import table
 from meshes import HEIGHT, LENGTH, WIDTH, box, together
 from PIL import Image
 
-from fabric_cad.pictures.views import State, cut_along, draw_cell, draw_deformed, write_series
-from fabric_cad.pictures.views.cell import window_size
-from fabric_cad.pictures.views.limits import limits_of
-from fabric_cad.pictures.views.scene import scale_bar
-from fabric_cad.pictures.views.skin import skin_of
+from fabric_cad.pictures import State, cut_along, draw_cell, draw_deformed, write_series
+from fabric_cad.pictures.cell import window_size
+from fabric_cad.pictures.limits import limits_of
+from fabric_cad.pictures.scene import scale_bar
+from fabric_cad.pictures.skin import skin_of
 from fabric_cad.simulation.settings import YarnLaw
 from fabric_cad.simulation.stress import yarn_stress
 
@@ -224,7 +224,7 @@ def test_show_opens_a_window_that_fits_a_laptop():
     code = """
 import pyvista
 from meshes import box
-from fabric_cad.pictures.views import show_cell
+from fabric_cad.pictures import show_cell
 sizes = []
 wait = pyvista.Plotter.show
 def shown(plotter, **options):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fabric_cad.cli.command import main
+from fabric_cad.cli import main
 from fabric_cad.measured.tables import read_family
 from fabric_cad.measured.wif import read_wif, wif_row
 from fabric_cad.support.errors import InputError

@@ -13,7 +13,7 @@ from odf.opendocument import OpenDocumentSpreadsheet
 from odf.table import CoveredTableCell, Table, TableCell, TableRow
 from odf.text import P
 
-from fabric_cad.cli.command import main
+from fabric_cad.cli import main
 from fabric_cad.measured.tables import MEASURED, read_families, read_family
 from fabric_cad.measured.workbook_scan import LARGEST
 from fabric_cad.measured.workbooks import letters_of

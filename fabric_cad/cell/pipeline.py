@@ -185,7 +185,7 @@ def make_cell(
                 from ..decks.cell import write_deck
 
             write_deck(meshed.mesh, folder / f"{name}.inp", f"elementary cell of {name}", dialect)
-        from ..pictures.views import draw_cell, write_vtu
+        from ..pictures import draw_cell, write_vtu
 
         with stages("write vtu"):
             write_vtu(meshed.mesh, meshed.quality, folder / f"{name}.vtu")

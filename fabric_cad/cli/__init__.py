@@ -1,0 +1,5 @@
+"""The command ``fabric-cad``."""
+
+from .command import main
+
+__all__ = ["main"]

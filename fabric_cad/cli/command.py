@@ -557,7 +557,7 @@ def _show_row(settings, name: str) -> None:
         settings.deck = "calculix"
         _make_cell(settings, name)
     from ..meshing.mesher import read_mesh
-    from ..pictures.views import show_cell
+    from ..pictures import show_cell
 
     show_cell(read_mesh(mesh_file), name)
 
@@ -629,8 +629,8 @@ def _wif(settings) -> int:
 
 def shipped_families() -> Path:
     """Folder of the family tables that come with the package."""
-    inside = Path(__file__).parent / "families"
-    return inside if inside.is_dir() else Path(__file__).parents[1] / "families"
+    inside = Path(__file__).parents[1] / "families"
+    return inside if inside.is_dir() else Path(__file__).parents[2] / "families"
 
 
 def _other_form(table: Path) -> Path:

@@ -48,7 +48,7 @@ class Mesh:
         1 warp) and ``fibre_axis``. With ``surfaces`` a MultiBlock: the grid as ``yarns``, then every
         surface as PolyData under its name, with its node numbers from 0 as point data ``node``.
         """
-        from ..pictures.views import pyvista_blocks, pyvista_grid
+        from .grids import pyvista_blocks, pyvista_grid
 
         return pyvista_blocks(self) if surfaces else pyvista_grid(self)
 

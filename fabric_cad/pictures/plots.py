@@ -17,7 +17,7 @@ from ..comparison.models import MODELS, TOLERANCE, Model, crossing_gap
 from ..model.solved import SolvedFabric, point_columns
 from ..section.sections import KINDS, Section, contact_section, free_section
 from ..section.splines import Spline
-from ..simulation.penetration import valid_until
+from ..support.series import valid_until
 from ..weave.colours import COLOURS
 from ..weave.weaves import DIRECTIONS, Yarn, direction_of, yarns_of
 from ..yarn.sweeps import control_planes, control_sections, trajectory
@@ -202,7 +202,8 @@ def _on_axis(section: Section, side: str) -> float:
 
 
 def plot_model_cuts(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 1, stretch: float = 3.0) -> None:
-    """The same cut along a yarn's axis for every model of :data:`fabric_cad.comparison.models.MODELS`, one each on ``axes``.
+    """The same cut along a yarn's axis for every model of
+    :data:`fabric_cad.comparison.models.MODELS`, one each on ``axes``.
 
     Penetrations are red, voids white; z is drawn ``stretch`` times larger.
     """
@@ -344,7 +345,7 @@ def plot_shear_curve(columns: Mapping[str, Sequence[float]], axes=None, allowed:
 def plot_crushing(cuts: Mapping[str, Sequence], scale: float, axes=None, stretch: float = 3.0):
     """Cuts of a cell under load, filled, over the cell at rest, dashed (Fig. 22c); the figure.
 
-    ``cuts`` maps the yarn each runs along to its :class:`fabric_cad.pictures.views.Outline` list; an axes each.
+    ``cuts`` maps the yarn each runs along to its :class:`fabric_cad.pictures.Outline` list; an axes each.
     Displacements are drawn ``scale`` times and z ``stretch`` times larger, which the picture says.
     """
     shapes = [np.ptp(np.vstack([cut.rest for cut in outlines]), axis=0) for outlines in cuts.values()]

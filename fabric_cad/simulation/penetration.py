@@ -7,7 +7,6 @@ continuation in the neighbouring cells included.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
@@ -76,21 +75,6 @@ def penetration(mesh: Mesh, points: np.ndarray, period: np.ndarray | None = None
         if depth > found.depth:
             found = Penetration(depth, mesh.yarns[i], mesh.yarns[j], place)
     return Penetration(found.depth, found.first, found.second, found.place, by_pair)
-
-
-def valid_until(states: Sequence[float], depths: Sequence[float], allowed: float) -> float:
-    """The state (an angle, a strain) at which the depth of penetration first exceeds ``allowed``.
-
-    ``states`` ascend, ``depths`` and ``allowed`` are in one unit; between states the depth is taken
-    as linear. The last state where it never exceeds, the first where it does from the start.
-    """
-    over = np.flatnonzero(np.asarray(depths) > allowed)
-    if not len(over):
-        return float(states[-1])
-    if (n := over[0]) == 0:
-        return float(states[0])
-    share = (allowed - depths[n - 1]) / (depths[n] - depths[n - 1])
-    return float(states[n - 1] + share * (states[n] - states[n - 1]))
 
 
 def _check(name: str, array: np.ndarray, shape: tuple[int, ...]) -> None:

@@ -24,7 +24,7 @@ def write_states(
     case: Case, times: Iterable[float], labels: Sequence[str], reached: Sequence[Reached], rows: Sequence[dict]
 ) -> None:
     """Every state as ``<case>.pvd`` and the files it names, with the numbers of its ``rows`` as field data."""
-    from ..pictures.views import State, write_series
+    from ..pictures import State, write_series
 
     mesh, law = case.cell.mesh, case.settings.yarn
     with case.stages("write states"):
@@ -66,7 +66,7 @@ def draw_shear(case: Case, rows: list[dict]) -> None:
 
 def draw_state(case: Case, state: Reached, label: str) -> None:
     """The deformed cell of Fig. 22b and d, coloured by what is known of it."""
-    from ..pictures.views import draw_deformed
+    from ..pictures import draw_deformed
 
     mesh, title = case.cell.mesh, f"{case.cell.fabric.name}: {label}"
     _, through = transverse_strains(mesh, state.strain)
@@ -85,8 +85,8 @@ def draw_state(case: Case, state: Reached, label: str) -> None:
 
 def draw_crushing(case: Case, state: Reached, label: str) -> None:
     """Cuts along a weft and a warp at rest and under load (Fig. 22c), displacements drawn larger."""
+    from ..pictures import cut_along
     from ..pictures.plots import plot_crushing, save_figure
-    from ..pictures.views import cut_along
 
     mesh = case.cell.mesh
     with case.stages("cuts"):

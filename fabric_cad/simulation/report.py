@@ -39,7 +39,7 @@ class Case:
 
 
 def case_report(case: Case, name: str, jobs: list[Job], rows: list[dict], found: dict) -> dict:
-    """The content of ``tension.json`` or ``shear.json``, but for where it comes from (:mod:`fabric_cad.cell.traces`)."""
+    """The content of ``tension.json`` or ``shear.json``, but for where it comes from."""
     reached = [each for job in jobs for each in job.reached]
     settings = asdict(case.settings)
     settings["yarn"]["compaction_strain"] = _finite(settings["yarn"]["compaction_strain"])

@@ -19,10 +19,10 @@ from ..cell.traces import renew_digests, trace, write_traced
 from ..decks.model import Load
 from ..measured.tables import Family
 from ..support.errors import SolverError
+from ..support.series import valid_until
 from ..support.staging import staged
 from .cell import loaded_cell
 from .job import Job, Reached, Solver, at_rest, condition, run_job, write_model
-from .penetration import valid_until
 from .pictures import draw_crushing, draw_shear, draw_state, draw_tension, write_states
 from .progress import CaseWatch
 from .report import Case, case_report, plain, write_rows

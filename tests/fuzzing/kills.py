@@ -34,7 +34,7 @@ def load_cad() -> None:
     import fabric_cad.masters
     import fabric_cad.meshing.mesher
     import fabric_cad.model.identification
-    import fabric_cad.pictures.views  # noqa: F401
+    import fabric_cad.pictures  # noqa: F401
 
 
 class Place:

@@ -1,18 +1,14 @@
-"""PyVista and VTK, loaded when they are needed, and arrays checked before they get there."""
+"""Arrays that frozen values hold."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...support.interrupts import uninterrupted
 
-
-def pyvista():
-    """PyVista, which is loaded whole or not at all."""
-    with uninterrupted():
-        import pyvista
-
-    return pyvista
+def read_only(values: np.ndarray) -> np.ndarray:
+    """The array itself, no longer to be written to."""
+    values.setflags(write=False)
+    return values
 
 
 def checked(name: str, values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:

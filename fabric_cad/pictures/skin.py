@@ -18,7 +18,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from ...meshing.mesh import Mesh
+from ..meshing.mesh import Mesh
 
 CREASE_DEGREES = 60
 """Angle between the faces on both sides of a section's corner from which it is a crease."""

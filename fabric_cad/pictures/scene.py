@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ...meshing.mesh import Mesh
-from ...weave.colours import COLOURS
-from ...weave.weaves import DIRECTIONS, direction_of
-from .library import pyvista
+from ..meshing.mesh import Mesh
+from ..support.vtk import pyvista
+from ..weave.colours import COLOURS
+from ..weave.weaves import DIRECTIONS, direction_of
 from .skin import Skin, skin_of
 
 SIZE = (1600, 1200)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...meshing.mesh import Mesh
-from .library import checked
+from ..meshing.mesh import Mesh
+from ..support.arrays import checked
 from .limits import limits_of
 from .scene import EDGE, SIZE, add_lines, add_yarns, finish, new_scene, offscreen, save, surface
 from .skin import skin_of

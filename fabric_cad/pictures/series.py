@@ -12,9 +12,10 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from ...meshing.mesh import Mesh
-from .library import checked
-from .vtu import pyvista_grid, write_grid
+from ..meshing.grids import pyvista_grid
+from ..meshing.mesh import Mesh
+from ..support.arrays import checked
+from .vtu import write_grid
 
 
 @dataclass(frozen=True, eq=False)

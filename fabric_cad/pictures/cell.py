@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ...meshing.mesh import Mesh
-from ...support.errors import OutputError
+from ..meshing.mesh import Mesh
+from ..support.errors import OutputError
 from .scene import SIZE, add_yarns, finish, new_scene, offscreen, save
 
 _OF_THE_SCREEN = 0.8  # that a window takes at most: frames, bars and docks need room too

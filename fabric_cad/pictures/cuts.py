@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...meshing.mesh import Mesh
-from ...weave.weaves import DIRECTIONS, direction_of
-from .library import checked
-from .vtu import grid_of
+from ..meshing.grids import grid_of
+from ..meshing.mesh import Mesh
+from ..support.arrays import checked
+from ..weave.weaves import DIRECTIONS, direction_of
 
 _BESIDE = 1e-6  # of the cell: how far the cut keeps from nodes that lie in its plane
 
