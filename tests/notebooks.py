@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import io
+import os
 import re
 import sys
 import tempfile
@@ -16,12 +17,16 @@ from pathlib import Path
 import nbformat
 from nbclient import NotebookClient
 from PIL import Image
+from traitlets.config import Config
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 COLOURS = 128
 """Most colours of a stored picture."""
+
+# the kernel listens at sockets of this user's own where there are such, not at ports
+_PRIVATE = Config({"KernelManager": {"transport": "ipc"}} if os.name == "posix" else {})
 
 RELATIVE, ABSOLUTE = 1e-3, 1e-9
 """By how much a number of a fresh run may differ from the stored one, besides a unit of its last digit."""
@@ -82,7 +87,7 @@ def differences(stored: nbformat.NotebookNode, fresh: nbformat.NotebookNode) -> 
 
 
 def alike(one: str, other: str) -> bool:
-    """True where two texts are the same but for spaces and, within the tolerance, numbers."""
+    """True where two texts are the same but for spaces and, within the tolerance, numbers that are not whole."""
 
     def words(text: str) -> list[str]:
         return _NUMBER.sub("#", text).split()
@@ -93,14 +98,21 @@ def alike(one: str, other: str) -> bool:
 
 def _close(one: re.Match, other: re.Match) -> bool:
     first, second = float(one[0]), float(other[0])
+    if _is_whole(one) and _is_whole(other):
+        return first == second
+
     digit = max(_last_digit(one), _last_digit(other))
     return abs(first - second) <= max(ABSOLUTE, RELATIVE * abs(first), 1.001 * digit)
 
 
+def _is_whole(number: re.Match) -> bool:
+    return number[1] is None and number[2] is None
+
+
 def _last_digit(number: re.Match) -> float:
-    """The worth of a unit of a number's last decimal, 0 for whole numbers."""
+    """The worth of a unit of a number's last digit, 0 for whole numbers."""
     decimals, exponent = number[1], number[2]
-    if decimals is None and exponent is None:
+    if _is_whole(number):
         return 0.0
     return 10.0 ** (int(exponent or 0) - len(decimals or ""))
 
