@@ -22,11 +22,11 @@ from traitlets.config import Config
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
+TIMEOUT = 900
+"""Seconds a cell may take, many times what it does on a machine that is idle."""
+
 COLOURS = 128
 """Most colours of a stored picture."""
-
-# the kernel listens at sockets of this user's own where there are such, not at ports
-_PRIVATE = Config({"KernelManager": {"transport": "ipc"}} if os.name == "posix" else {})
 
 RELATIVE, ABSOLUTE = 1e-3, 1e-9
 """By how much a number of a fresh run may differ from the stored one, besides a unit of its last digit."""
@@ -45,7 +45,11 @@ def code_cells(notebook: nbformat.NotebookNode) -> list[nbformat.NotebookNode]:
 def executed(path: Path, folder: Path) -> nbformat.NotebookNode:
     """A notebook as run in ``folder``. Raises what nbclient raises where a cell fails."""
     notebook = read(path)
-    NotebookClient(notebook, timeout=300, record_timing=False, resources={"metadata": {"path": str(folder)}}).execute()
+    where = {"metadata": {"path": str(folder)}}
+    with tempfile.TemporaryDirectory() as sockets:
+        NotebookClient(
+            notebook, timeout=TIMEOUT, record_timing=False, resources=where, config=_private(sockets)
+        ).execute()
 
     notebook.metadata = {"kernelspec": notebook.metadata["kernelspec"]}
     for cell in code_cells(notebook):
@@ -55,6 +59,11 @@ def executed(path: Path, folder: Path) -> nbformat.NotebookNode:
             if picture is not None:
                 output.data["image/png"] = smaller(picture)
     return notebook
+
+
+def _private(folder: str) -> Config:
+    """Has a kernel listen at sockets in a folder of this user's own, not at ports, where a system has such."""
+    return Config({"KernelManager": {"transport": "ipc", "ip": f"{folder}/kernel"}} if os.name == "posix" else {})
 
 
 def smaller(picture: str) -> str:

@@ -19,7 +19,8 @@ def printable(text: str) -> str:
 
 def quoted(value: object, most: int = 300) -> str:
     """A value as Python writes it, a text in quotation marks with control characters as escapes; of a long one
-    its beginning."""
+    its beginning.
+    """
     if isinstance(value, str) and len(value) > most:
         return f"{value[:most]!r}..."
     written = repr(value)
