@@ -91,3 +91,14 @@ def test_the_readmes_row_is_a_fabric(tmp_path):
     (table,) = re.findall(r"```text\n(name,.*?)```", READ[ROOT / "README.md"], re.DOTALL)
     (tmp_path / "twill.csv").write_text(table)
     assert identify(read_family(tmp_path / "twill.csv"))["twill32"].fabric_thickness == pytest.approx(0.7096, abs=5e-5)
+
+
+def test_names_that_examples_import_are_public():
+    blocks = re.findall(r"```python\n(.*?)```", EVERYTHING, re.DOTALL)
+    names = {
+        name
+        for block in blocks
+        for line in re.findall(r"^from fabric_cad import (.*)$", block, re.MULTILINE)
+        for name in line.split(", ")
+    }
+    assert {"identify", "measured_fabric"} <= names <= set(fabric_cad.__all__)
