@@ -1,0 +1,1 @@
+"""Models with constant sections, beside the present one."""

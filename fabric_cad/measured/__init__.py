@@ -1,0 +1,1 @@
+"""What is read from family tables and drafts: columns, rows, and the rules of a row."""

@@ -1,0 +1,1 @@
+"""From measured rows to the solved table: the paper's identification."""

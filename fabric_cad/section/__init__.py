@@ -1,0 +1,1 @@
+"""The sections of yarns, and the splines they are drawn with."""

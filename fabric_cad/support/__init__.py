@@ -1,0 +1,1 @@
+"""Errors, files, staging and interrupts: nothing of fabrics."""

@@ -1,0 +1,1 @@
+"""Weaves, patterns and the yarns of a cell."""

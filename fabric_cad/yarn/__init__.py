@@ -1,0 +1,1 @@
+"""Trajectories, skins, edges and volumes of yarns, in closed form."""
