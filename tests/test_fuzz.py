@@ -27,6 +27,8 @@ def test_no_input_and_no_kill_harms(part, seeds):
 TRIAL = Trial("a wrong table", ("solve",), {}, r"families/plain\.csv:\d+: ", leaves="build/families/plain.csv")
 REFUSAL = "families/plain.csv:3: weft_crimp: 'x' is not a number (row plain)\n"
 
+CRASH = 'Traceback (most recent call last):\n  File "/a/b.py", line 3, in c\nKeyError\n'
+
 
 @pytest.mark.parametrize(
     ("ended", "wrong"),
@@ -39,7 +41,10 @@ REFUSAL = "families/plain.csv:3: weft_crimp: 'x' is not a number (row plain)\n"
         (Ended(2, "", REFUSAL, 0.1, ("build/families/plain.csv",)), ["left behind: build/families/plain.csv"]),
         (Ended(2, "", REFUSAL, 0.1, ("(temp folder) x",)), ["left behind: (temp folder) x"]),
         (Ended(0, "\x1b[31mred \u202etext", "", 0.1), ["printed U+001B, U+202E"]),
-        (Ended(2, "", f"Traceback\n{REFUSAL}", 0.1), ["a traceback"]),
+        (
+            Ended(2, "", f'{REFUSAL}Traceback\n  File "/a/b.py", line 3\nKeyError', 0.1),
+            ["a traceback (b.py:3): KeyError"],
+        ),
     ],
 )
 def test_what_is_wrong_with_an_ending_is_seen(ended, wrong):

@@ -8,7 +8,8 @@ from stability import try_fabric
     ("part", "seed"),
     [("standard", seed) for seed in range(6)]
     + [("general", seed) for seed in (*range(6), 195)]
-    + [(part, seed) for part in ("patterns", "narrow", "unequal", "flat-gaps") for seed in range(2)],
+    + [("narrow", 0), ("unequal", 0)]
+    + [("patterns", 45), ("patterns", 58), ("flat-gaps", 23), ("flat-gaps", 30)],  # of few yarns
 )
 def test_a_random_fabric_is_consistent_or_refused_with_a_reason(part, seed):
     outcome = try_fabric(seed, part)

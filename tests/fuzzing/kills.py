@@ -18,7 +18,7 @@ import numpy as np
 
 from .results import mixed, read_folder
 from .tables import SHIPPED
-from .trial import fork_command, wait
+from .trial import fork_command, tracebacks, wait
 
 ROW = "plain"
 OLD, NEW = ("--across", "4", "--gap", "2"), ("--across", "6", "--gap", "2")
@@ -142,8 +142,7 @@ def kill_run(seed: int) -> tuple[str, str, list[str]]:
         told = place.told("killed")
         if "earlier results are as they were" in told and elements != before:
             wrong.append("'earlier results are as they were' is not true")
-        if "Traceback" in told:
-            wrong.append("a traceback")
+        wrong += tracebacks(told)
         if status is None:
             wrong.append(f"does not end within {CELL_LIMIT:g} s of its signal")
         if seed % 5 == 0:  # the next run tidies up

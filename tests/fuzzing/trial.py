@@ -97,8 +97,7 @@ def faults(trial: Trial, ended: Ended) -> list[str]:
     wrong = []
     if ended.status not in trial.statuses:
         wrong.append(f"exit status {ended.status}")
-    if "Traceback" in ended.err or "Error ignored" in ended.err or "Exception ignored" in ended.err:
-        wrong.append("a traceback")
+    wrong += tracebacks(ended.err)
     if ended.status != 0 and not re.search(trial.place, ended.err):
         wrong.append("a refusal without its place")
     allowed = trial.leaves_refused if ended.status else trial.leaves
@@ -110,6 +109,15 @@ def faults(trial: Trial, ended: Ended) -> list[str]:
     if ended.status and len(ended.err) > MOST_PRINTED:
         wrong.append(f"a refusal of {len(ended.err)} characters")
     return wrong
+
+
+def tracebacks(text: str) -> list[str]:
+    """The last lines of what Python says of an error nobody has caught, also where it goes on; empty without one."""
+    if not re.search("Traceback|Error ignored|Exception ignored", text):
+        return []
+    places = re.findall(r'File "(?:[^"]*/)?([^"/]+)", line (\d+)', text)[-3:]
+    last = next(line for line in reversed(text.splitlines()) if line.strip())
+    return [f"a traceback ({', '.join(':'.join(place) for place in places)}): {last[:200]}"]
 
 
 def _strange(text: str) -> list[str]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from .kills import CELL_LIMIT, NEW, OLD, ROW, Place, undisturbed
 from .results import mixed, read_folder
+from .trial import tracebacks
 
 
 def run_twice(seed: int) -> tuple[str, str, list[str]]:
@@ -32,8 +33,7 @@ def run_twice(seed: int) -> tuple[str, str, list[str]]:
             told = place.told(name)
             if status != 0 and "under way" not in told:
                 wrong.append(f"the {name} run ends with {status}: {told}")
-            if "Traceback" in told:
-                wrong.append("a traceback")
+            wrong += tracebacks(told)
         if elements not in (old, new):
             wrong.append(f"{elements} elements")
         if litter := place.litter():
