@@ -167,6 +167,15 @@ def test_a_reader_that_leaves_a_pipe_is_no_crash(here):
     assert all(line.startswith("warning: ") for line in done.stderr.splitlines())
 
 
+def test_ctrl_c_when_all_has_been_said_is_no_traceback(here, monkeypatch, capsys):
+    def pressed():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fabric_cad.terminal.finish", pressed)
+    assert main(["list"]) == 1
+    assert capsys.readouterr().err.endswith("\nstopped\n")
+
+
 def test_a_missing_system_library_is_named(here, monkeypatch, capsys):
     def load(*_):
         raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")

@@ -168,6 +168,14 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; returns its exit status."""
+    try:
+        return _main(arguments)
+    except KeyboardInterrupt:  # once more while the first was told, or when all had been said
+        complain("\nstopped")
+        return 1
+
+
+def _main(arguments: list[str] | None) -> int:
     terminal.prepare()
     with stoppable(), commits() as done:
         try:
