@@ -171,7 +171,7 @@ def test_ctrl_c_when_all_has_been_said_is_no_traceback(here, monkeypatch, capsys
     def pressed():
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fabric_cad.terminal.finish", pressed)
+    monkeypatch.setattr("fabric_cad.cli.terminal.finish", pressed)
     assert main(["list"]) == 1
     assert capsys.readouterr().err.endswith("\nstopped\n")
 

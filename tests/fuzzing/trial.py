@@ -192,7 +192,8 @@ def _nothing():
 @contextmanager
 def stop_before_cad():
     """Let a command that would load CadQuery, or run the units of a study, end there with status 0."""
-    from fabric_cad import pipeline, study
+    from fabric_cad import study
+    from fabric_cad.cell import pipeline
 
     stage, run_study = pipeline.Stages.__call__, study.run_study
 
