@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fabric_cad.cli.command import shipped_families
+from fabric_cad.measured.shipped import shipped_families
 
 sys.path.insert(0, str(Path(__file__).parent))
 

@@ -53,7 +53,7 @@ def test_heavy_packages_stay_behind_their_doors(path):
             ("cadquery", "OCP", "gmsh", "scipy", "pyvista", "dask", "distributed", "pyarrow", "matplotlib"),
         ),
         (
-            "from fabric_cad.cli.command import main; main(['list', '-q'])",
+            "from fabric_cad.cli import main; main(['list', '-q'])",
             ("cadquery", "OCP", "gmsh", "scipy", "pyvista"),
         ),
     ],

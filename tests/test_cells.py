@@ -18,7 +18,7 @@ import fabric_cad
 from fabric_cad import mesh_options
 from fabric_cad.cell.pipeline import find_row, make_cell
 from fabric_cad.cell.traces import renew_digests
-from fabric_cad.cli.command import shipped_families
+from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.measured.tables import read_families
 from fabric_cad.meshing.count import hexahedra
 from fabric_cad.model.solved import read_solved

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from fabric_cad.cli.command import main, shipped_families
+from fabric_cad.cli import main
+from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.support import staging
 from fabric_cad.support.errors import BuildError, OutputError
 

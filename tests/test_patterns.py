@@ -6,7 +6,7 @@ from fabrics import TWILL32, skin_of, table
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fabric_cad.cli.command import shipped_families
+from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.measured.tables import MOST_YARNS, read_families, read_family
 from fabric_cad.model.identification import identify
 from fabric_cad.model.lengths import excess_length

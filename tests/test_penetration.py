@@ -10,7 +10,7 @@ from meshes import HEIGHT, LENGTH, WIDTH, box, together
 from scipy.spatial.transform import Rotation
 
 from fabric_cad.cell.pipeline import find_row, make_cell
-from fabric_cad.cli.command import shipped_families
+from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.simulation.isoparametric import distance_to_quads, inside_hexahedra
 from fabric_cad.simulation.penetration import kind_of, penetration
 from fabric_cad.support.series import valid_until

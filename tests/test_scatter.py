@@ -12,7 +12,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import fabric_cad
-from fabric_cad.cli.command import main, shipped_families
+from fabric_cad.cli import main
+from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.measured.tables import MEASURED, read_families
 from fabric_cad.model.closing import CLOSING
 from fabric_cad.model.identification import identify
@@ -364,7 +365,7 @@ def test_shipped_rows_agree_with_the_model():
 
 
 def test_validation_loads_no_more_than_it_needs():
-    code = "import sys; from fabric_cad.cli.command import main; main(['validate', '-q', '--families', sys.argv[1]])"
+    code = "import sys; from fabric_cad.cli import main; main(['validate', '-q', '--families', sys.argv[1]])"
     code += "; print([name for name in ('cadquery', 'OCP', 'gmsh', 'scipy', 'pyvista') if name in sys.modules])"
     command = [sys.executable, "-c", code, str(shipped_families())]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(fabric_cad.__file__).parents[1])

@@ -6,7 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from fabric_cad.simulation.settings import read_settings, shipped_settings
+from fabric_cad.measured.shipped import shipped_families
+from fabric_cad.simulation.settings import read_settings
 from fabric_cad.support.errors import InputError
 
 
@@ -16,11 +17,11 @@ def read(tmp_path, text, row="plain"):
 
 
 def test_without_a_file_the_shipped_one_holds(tmp_path):
-    assert read_settings(tmp_path, "plain") == read_settings(shipped_settings().parent, "any_row")
+    assert read_settings(tmp_path, "plain") == read_settings(shipped_families(), "any_row")
 
 
 def test_every_shipped_value_says_where_it_comes_from():
-    for line in shipped_settings().read_text(encoding="utf-8").splitlines():
+    for line in (shipped_families() / "simulation.toml").read_text(encoding="utf-8").splitlines():
         if "=" in line and not line.startswith("#"):
             assert "#" in line, line
 

@@ -3,7 +3,7 @@
 import pytest
 
 from fabric_cad import identify, read_family
-from fabric_cad.cli.command import shipped_families
+from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.weave.weaves import DIRECTIONS
 
 # printed in Cao et al. 2008, Table 1: areal mass g/m2, fabric thickness mm, standard deviations of the widths mm

@@ -14,9 +14,10 @@ from meshes import LENGTH as BOX_LENGTH
 from scipy.integrate import simpson
 
 from fabric_cad.cell.pipeline import find_row
-from fabric_cad.cli.command import main, shipped_families
+from fabric_cad.cli import main
 from fabric_cad.decks.keywords import Boundary, Compaction, EngineeringConstants, Material, write_keywords
 from fabric_cad.decks.model import Load, Touch, model_keywords
+from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.simulation.energy import cell_energy
 from fabric_cad.simulation.job import Solver, at_rest, run_job, transverse_strains, write_model
 from fabric_cad.simulation.penetration import penetration

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from fabric_cad.cli.command import main, shipped_families
+from fabric_cad.cli import main
+from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.study.definition import read_study
 from fabric_cad.study.factors import Normal, Uniform, Values
 from fabric_cad.support.errors import InputError

@@ -635,12 +635,6 @@ def _wif(settings) -> int:
     return 0
 
 
-def shipped_families() -> Path:
-    """Folder of the family tables that come with the package."""
-    inside = Path(__file__).parents[1] / "families"
-    return inside if inside.is_dir() else Path(__file__).parents[2] / "families"
-
-
 def _other_form(table: Path) -> Path:
     """The file, or the workbook that holds the same table."""
     from ..measured.table_files import WORKBOOKS
@@ -650,6 +644,8 @@ def _other_form(table: Path) -> Path:
 
 
 def _init(settings) -> int:
+    from ..measured.shipped import shipped_families
+
     target = Path("families")
     try:
         target.mkdir(exist_ok=True)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..measured.shipped import shipped_families
 from ..measured.tables import Family, read_families
 from ..support.errors import InputError, Problem, did_you_mean, quoted
 from ..support.toml_files import read_toml
@@ -157,18 +158,12 @@ def _is_ratio(value: object) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and value >= 0
 
 
-def shipped_settings() -> Path:
-    """The ``simulation.toml`` that comes with the package."""
-    inside = Path(__file__).parents[1] / "families" / FILE
-    return inside if inside.exists() else Path(__file__).parents[2] / "families" / FILE
-
-
 def read_settings(families: str | Path, row: str) -> Settings:
     """Settings of one row: the shipped file's, the folder's own, then what the folder's file has for the row.
 
     Raises :class:`InputError` naming file, line, key, value and bound of all that is wrong.
     """
-    layers = [_File(shipped_settings())]
+    layers = [_File(shipped_families() / FILE)]
     own = Path(families) / FILE
     if own.exists():
         layers.append(_File(own))

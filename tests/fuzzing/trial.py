@@ -168,7 +168,7 @@ def _status(arguments: tuple[str, ...], around: Callable | None) -> int:
     """Exit status of the command as the interpreter would have it, tracebacks printed."""
     import traceback
 
-    from fabric_cad.cli.command import main
+    from fabric_cad.cli import main
 
     try:
         with around() if around else _nothing():
