@@ -2,7 +2,7 @@
 
 import sys
 
-from .cli.command import main
+from .cli import main
 
 if __name__ == "__main__":  # a worker process imports it under another name
     sys.exit(main())

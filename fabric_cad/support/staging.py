@@ -8,7 +8,7 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -60,7 +60,7 @@ def commits() -> Iterator[list[Path]]:
         _commits = before
 
 
-def standing(done: list[Path]) -> str:
+def standing(done: Sequence[Path]) -> str:
     """How the results stand where a run ended early that had put ``done`` in place."""
     if not done:
         return "earlier results are as they were"
