@@ -8,7 +8,7 @@ from fabric_cad.cli import main
 from fabric_cad.meshing import mesher
 from fabric_cad.meshing.count import hexahedra, needed_memory
 from fabric_cad.meshing.options import MOST, MeshOptions, mesh_options
-from fabric_cad.meshing.plan import plan_yarn
+from fabric_cad.meshing.plan import plan_yarns
 from fabric_cad.model.identification import identify_rows
 from fabric_cad.model.solved import SolvedFabric
 from fabric_cad.support import memory
@@ -28,7 +28,7 @@ GIGABYTE = 10**9
 
 def planned(fabric, options):
     """The hexahedra of all yarns' plans: layers along, each of the template's quadrilaterals."""
-    plans = [plan_yarn(fabric, yarn, options) for yarn in yarns_of(fabric.weave.interlacement())]
+    plans = plan_yarns(fabric, yarns_of(fabric.weave.interlacement()), options)
     return sum(len(plan.template.quads) * plan.rows[-1] for plan in plans)
 
 

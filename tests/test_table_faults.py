@@ -68,7 +68,7 @@ def test_list_shows_sound_rows_and_names_the_wrong(here, capsys):
 def test_a_wrong_row_stops_its_own_cell_only(here, capsys, monkeypatch, wrong):
     write("families", wrong, GOOD)
     made = []
-    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or {})
+    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or {"warnings": []})
     monkeypatch.setattr("fabric_cad.cell.report.summary", lambda report: "made")
     assert main(["cell", "good"]) == 0 and made == [("good",)]
     monkeypatch.undo()
@@ -231,7 +231,7 @@ def test_files_nearly_called_as_tables_are_named(tmp_path, capsys, name, meant):
 def test_other_files_are_left_alone(here, capsys, name):
     Path("families", name).write_text("") if name != "simulation.toml" else None
     assert main(["list"]) == 0
-    assert capsys.readouterr().err == ""
+    assert "not read" not in capsys.readouterr().err
 
 
 # ---- tables as a library's values
