@@ -68,7 +68,9 @@ def test_list_shows_sound_rows_and_names_the_wrong(here, capsys):
 def test_a_wrong_row_stops_its_own_cell_only(here, capsys, monkeypatch, wrong):
     write("families", wrong, GOOD)
     made = []
-    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or {"warnings": []})
+    monkeypatch.setattr(
+        "fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or {"warnings": []}
+    )
     monkeypatch.setattr("fabric_cad.cell.report.summary", lambda report: "made")
     assert main(["cell", "good"]) == 0 and made == [("good",)]
     monkeypatch.undo()

@@ -96,16 +96,23 @@ def _steep(direction: str, crimp: float, slope: float, column: str) -> str:
     )
 
 
-def doubtful_report(report: Mapping) -> list[str]:
-    """Sentences on what a cell's report shows: fibres that do not fit their yarn, elements of low quality."""
-    row, volumes, mesh = report["row"], report["volumes"], report.get("mesh")
+def overfull_yarns(row: str, fibre_fractions: Mapping[str, float]) -> list[str]:
+    """Sentences on yarns of a row, by direction, whose fibres do not fit in; a NaN is not known."""
     told = []
-    for d in DIRECTIONS:
-        share = volumes.get(f"{d}_fibre_fraction", 0.0)
+    for direction, share in fibre_fractions.items():
         if share > DENSEST:
             full = f"fibres fill {100 * share:.0f} % of the yarn's volume"
             message = f"{full}, above {100 * DENSEST:.0f} %, the densest packing"
-            told.append(str(Problem(message, column=f"{d}_linear_density_tex", row=row)))
+            told.append(str(Problem(message, column=f"{direction}_linear_density_tex", row=row)))
+    return told
+
+
+def doubtful_report(report: Mapping) -> list[str]:
+    """Sentences on what a cell's report shows: fibres that do not fit their yarn, elements of low quality."""
+    row, volumes, mesh = report["row"], report["volumes"], report.get("mesh")
+    shares = {d: volumes.get(f"{d}_fibre_fraction", 0.0) for d in DIRECTIONS}
+    told = overfull_yarns(row, shares)
+
     if mesh is not None and mesh["min_scaled_jacobian"] < LOW_JACOBIAN:
         allowed = f"the yarns' edges allow {mesh['scaled_jacobian_edges_allow']:.2g}"
         told.append(

@@ -10,7 +10,7 @@ from ..cell.report import YARN_DATA
 from ..measured.tables import Family
 from ..model.closing import CLOSING
 from ..model.identification import Identified
-from ..model.plausibility import implausible
+from ..model.plausibility import DENSEST, implausible, overfull_yarns
 from ..model.solved import point_columns
 from ..weave.weaves import DIRECTIONS
 from ..yarn.volumes import yarn_volumes
@@ -122,14 +122,25 @@ def identified_figures(table: Family, found: Identified) -> dict[str, Sequence]:
                 f"measured_vs_model.{name}.model": model,
                 f"measured_vs_model.{name}.difference_percent": 100 * (model - given) / given,
             }
-    return figures | _volumes(table, found, weaves, wefts, warps) | _warnings(table, found)
+    volumes = _volumes(table, found, weaves, wefts, warps)
+    return figures | volumes | _warnings(table, found, volumes)
 
 
-def _warnings(table: Family, found: Identified) -> dict[str, list[str | None]]:
+def _warnings(table: Family, found: Identified, volumes: Mapping[str, np.ndarray]) -> dict[str, list[str | None]]:
     """The warnings of every fabric as one text, where any has some."""
     told: dict[str | None, list[str]] = {}
     for problem in implausible(table.take(found.rows.tolist()), found.columns):
         told.setdefault(problem.row, []).append(str(problem))
+
+    fractions = {
+        d: volumes[f"volumes.{d}_fibre_fraction"] for d in DIRECTIONS if f"volumes.{d}_fibre_fraction" in volumes
+    }
+    overfull = np.any([share > DENSEST for share in fractions.values()], axis=0)
+    for number in np.flatnonzero(overfull) if fractions else ():
+        name = found.columns["name"][number]
+        shares = {d: float(share[number]) for d, share in fractions.items()}
+        told.setdefault(name, []).extend(overfull_yarns(name, shares))
+
     texts = ["; ".join(told[name]) if name in told else None for name in found.columns["name"]]
     return {"warnings": texts} if told else {}
 
