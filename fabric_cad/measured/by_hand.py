@@ -8,10 +8,10 @@ from numbers import Integral, Real
 
 from ..support.errors import ArgumentError, InputError, Place, Problem, did_you_mean
 from ..weave.weaves import FAMILIES
-from .columns import MEASURED, OTHER_UNITS, STD, TEXTS, WEAVE_COLUMNS
+from .columns import TEXTS, WEAVE_COLUMNS, known_columns
+from .family import Family
+from .reader import read_rows
 from .records import Record
-from .row_rules import RowReader
-from .tables import Family, family_table
 
 
 def measured_fabric(family: str, **columns: object) -> Family:
@@ -47,14 +47,15 @@ def measured_fabric(family: str, **columns: object) -> Family:
 
     needed = ("name", *WEAVE_COLUMNS[family])
     header = list(dict.fromkeys([*needed, *texts]))
-    row, problems = RowReader(family, header, Place()).read(Record(None, tuple(texts.get(c, "") for c in header)))
-    if problems:
-        raise InputError(problems)
-    return family_table(family, Place(), [row], [None])
+    row = Record(None, tuple(texts.get(column, "") for column in header))
+    table = read_rows(family, header, Place(), [row])
+    if table.refused:
+        raise InputError(table.refused)
+    return table
 
 
 def _unknown(family: str, given: Iterable[str]) -> list[Problem]:
-    known = [*TEXTS, *WEAVE_COLUMNS[family], *MEASURED, *STD, *OTHER_UNITS]
+    known = known_columns(family)
     return [
         Problem(f"unknown column of the {family} table{did_you_mean(column.lower(), known, cutoff=0.3)}", column=column)
         for column in given

@@ -1,57 +1,113 @@
-"""The columns of the family tables: every one with the unit it is kept in, and which names are safe."""
+"""The columns of the family tables, each stated once: its kind, unit, bound and other units it may be written in."""
 
 from __future__ import annotations
 
+import operator
 import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 
 from ..weave.weaves import DIRECTIONS
 
-WEAVE_COLUMNS = {"plain": (), "twill": ("over", "under"), "satin": ("harness", "step"), "pattern": ("pattern",)}
 
-PER_DIRECTION = (
-    "density_per_mm",
-    "width_mm",
-    "crimp",
-    "thickness_mm",
-    "contact_top_mm",
-    "contact_bottom_mm",
-    "offset_top_mm",
-    "offset_bottom_mm",
-    "linear_density_tex",
+@dataclass(frozen=True)
+class Bound:
+    """What a number, or an array of them, must keep: ``broken(value, 0)`` where it does not, and how to say so."""
+
+    word: str
+    broken: Callable
+
+
+ABOVE_0 = Bound("not above 0", operator.le)
+NOT_BELOW_0 = Bound("below 0", operator.lt)
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of numbers as it is written: its unit and bound, and the column and factor it is kept by."""
+
+    name: str
+    unit: str
+    bound: Bound = ABOVE_0
+    per_direction: bool = False
+    others: tuple[tuple[str, str, float], ...] = field(default=(), repr=False)  # (name, unit, factor to the kept)
+    kept: str = ""
+    factor: float = 1.0
+
+    def in_direction(self, direction: str) -> Column:
+        """The column of one direction."""
+        others = tuple((f"{direction}_{name}", unit, factor) for name, unit, factor in self.others)
+        return replace(self, name=f"{direction}_{self.name}", others=others)
+
+    def as_written(self) -> Iterator[Column]:
+        """The column and those in other units."""
+        yield replace(self, kept=self.name)
+        for name, unit, factor in self.others:
+            yield replace(self, name=name, unit=unit, others=(), kept=self.name, factor=factor)
+
+    def of_std(self) -> Column:
+        """The column of its standard deviation, which may be 0."""
+        return replace(self, name=f"{self.name}_std", kept=f"{self.kept}_std", bound=NOT_BELOW_0, others=())
+
+
+_PER_CM_AND_INCH = (("density_per_cm", "1/cm", 0.1), ("density_per_inch", "1/inch", 1 / 25.4))
+
+QUANTITIES = (
+    Column("density_per_mm", "1/mm", per_direction=True, others=_PER_CM_AND_INCH),
+    Column("width_mm", "mm", per_direction=True),
+    Column("crimp", "", per_direction=True, others=(("crimp_percent", "%", 0.01),)),
+    Column("thickness_mm", "mm", per_direction=True),
+    Column("contact_top_mm", "mm", per_direction=True),
+    Column("contact_bottom_mm", "mm", per_direction=True),
+    Column("offset_top_mm", "mm", NOT_BELOW_0, per_direction=True),
+    Column("offset_bottom_mm", "mm", NOT_BELOW_0, per_direction=True),
+    Column("linear_density_tex", "tex", per_direction=True),
+    Column("fabric_thickness_mm", "mm"),
+    Column("lateral_height_mm", "mm"),
+    Column("fibre_density_g_cm3", "g/cm3"),
 )
-MEASURED = (
-    *(f"{direction}_{quantity}" for direction in DIRECTIONS for quantity in PER_DIRECTION),
-    "fabric_thickness_mm",
-    "lateral_height_mm",
-    "fibre_density_g_cm3",
-)
+"""What may be measured, in the unit it is kept in."""
+
+
+def _written() -> Iterator[Column]:
+    """Every column of numbers, as it may be written, without the standard deviations."""
+    alike = [quantity for quantity in QUANTITIES if quantity.per_direction]
+    single = [quantity for quantity in QUANTITIES if not quantity.per_direction]
+
+    for direction in DIRECTIONS:
+        for quantity in alike:
+            yield from quantity.in_direction(direction).as_written()
+    for quantity in single:
+        yield from quantity.as_written()
+
+
+_VALUES = tuple(_written())
+NUMBERS = {column.name: column for column in (*_VALUES, *(value.of_std() for value in _VALUES))}
+"""Every column of numbers by the name it is written with, values first."""
+
+PER_DIRECTION = tuple(quantity.name for quantity in QUANTITIES if quantity.per_direction)
+
+MEASURED = tuple(column.name for column in _VALUES if column.kept == column.name)
 """Columns that hold a measured number, in the unit they are kept in."""
 
 STD = tuple(f"{name}_std" for name in MEASURED)
 
-OTHER_UNITS = {
-    f"{direction}_{written}": (f"{direction}_{kept}", factor)
-    for direction in DIRECTIONS
-    for written, kept, factor in (
-        ("density_per_cm", "density_per_mm", 0.1),
-        ("density_per_inch", "density_per_mm", 1 / 25.4),
-        ("crimp_percent", "crimp", 0.01),
-    )
-}
-OTHER_UNITS |= {f"{written}_std": (f"{kept}_std", factor) for written, (kept, factor) in OTHER_UNITS.items()}
+OTHER_UNITS = {column.name: (column.kept, column.factor) for column in NUMBERS.values() if column.kept != column.name}
 """Columns in other units: the column a quantity is kept in, and the factor to its unit."""
 
-STD_WRITTEN = {*STD, *(written for written in OTHER_UNITS if written.endswith("_std"))}
-MAY_BE_ZERO = {name for name in MEASURED if "_offset_" in name} | STD_WRITTEN
-
-TEXTS = ("name", "section", "float_gap", "thicker", "source", "notes")
+FREE_TEXTS = ("source", "notes")
 SECTIONS = ("lenticular", "flat", "round")
 
 FLOAT_GAPS = ("symmetric", "flat")
 """Sections between two crossings of one float: symmetric (Fig. 13b) or that of a flat contact (Fig. 13a)."""
 
-MOST_YARNS = 100
-"""Largest float or harness a table may ask for, and most wefts or warps of a pattern."""
+CHOICES = {"section": SECTIONS, "float_gap": FLOAT_GAPS, "thicker": DIRECTIONS}
+"""Columns of texts that are one of a few."""
+
+TEXTS = ("name", *CHOICES, *FREE_TEXTS)
+
+WEAVE_COLUMNS = {"plain": (), "twill": ("over", "under"), "satin": ("harness", "step"), "pattern": ("pattern",)}
+"""Columns of a family's weave: whole numbers, or the pattern as a text."""
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,79}")
 _RESERVED = {"families", "con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in range(10)}
@@ -60,3 +116,18 @@ _RESERVED = {"families", "con", "prn", "aux", "nul"} | {f"{port}{n}" for port in
 def is_safe_name(name: str) -> bool:
     """True where a text may name a row, and so its files and folder, on every system."""
     return bool(_NAME.fullmatch(name)) and name.lower() not in _RESERVED
+
+
+def kept_column(column: str) -> tuple[str, float]:
+    """The column in which a measurement is kept, and the factor from the written unit to its own."""
+    return OTHER_UNITS.get(column, (column, 1.0))
+
+
+def needed_columns(family: str) -> tuple[str, ...]:
+    """The columns without which no table of a family is one."""
+    return ("name", *WEAVE_COLUMNS[family], "weft_density_per_mm", "weft_width_mm")
+
+
+def known_columns(family: str) -> list[str]:
+    """Every column that a family's table may have."""
+    return [*TEXTS, *WEAVE_COLUMNS[family], *MEASURED, *STD, *OTHER_UNITS]

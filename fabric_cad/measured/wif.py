@@ -18,11 +18,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..support.errors import InputError, Problem, quoted
+from ..weave.faults import repeat_fault
 from ..weave.patterns import written
 from ..weave.weaves import pattern_faults
+from .columns import is_safe_name
 from .drafts import MOST_THREADS, Draft, read_draft
 from .setts import sett
-from .tables import MOST_YARNS, is_safe_name
 
 _ROW = (
     "name",
@@ -70,9 +71,8 @@ def _pattern(draft: Draft) -> tuple[str, ...]:
 
     rows = ["".join(raised if shafts & moves else other for shafts in threading) for moves in moved]
     pattern = _repeat(rows)
-    if max(len(pattern), len(pattern[0])) > MOST_YARNS:
-        size = f"{len(pattern)} wefts x {len(pattern[0])} warps"
-        raise draft.wrong(f"its repeat of {size} is more than {MOST_YARNS} in a direction")
+    if fault := repeat_fault(pattern):
+        raise draft.wrong(fault)
     if faults := pattern_faults(pattern):
         raise InputError([Problem(fault, draft.path) for fault in faults])
     return pattern

@@ -16,7 +16,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..measured.tables import Family
+from ..measured.family import Family
+from ..measured.row_values import RowValues
+from ..measured.rules import BOUNDS, SPACING, Rule
 from ..support.errors import InputError, Problem, expect
 from ..weave.weaves import DIRECTIONS
 from .identification import identify
@@ -162,12 +164,7 @@ def _identified_at(table: Family, name: str, values: np.ndarray, columns) -> tup
     Rows that are no fabric with it are NaN; second, why, by row number.
     """
     moved = replace(table, measured=table.measured | {name: values})
-    low, bound = (values < 0, "below 0") if "_offset_" in name else (values <= 0, "not above 0")
-    refused = {at: f"{values[at]:.4g} is {bound}" for at in np.flatnonzero(low).tolist()}
-    for d in DIRECTIONS:
-        width, density = moved.measured[f"{d}_width_mm"], moved.measured[f"{d}_density_per_mm"]
-        for at in np.flatnonzero(~low & (width * density >= 1)).tolist():
-            refused[at] = f"{d}_width_mm: {width[at]:.4g} is not below the {d} spacing {1 / density[at]:.4g} mm"
+    refused = _out_of_bounds(moved, name)
     numbers = np.full((len(columns), len(table)), np.nan)
     good = [at for at in range(len(table)) if at not in refused]
     try:
@@ -178,3 +175,17 @@ def _identified_at(table: Family, name: str, values: np.ndarray, columns) -> tup
         good = [at for at in good if at not in refused]
         numbers[:, good] = _numbers(identify(moved.take(good)), columns)
     return numbers, refused
+
+
+def _out_of_bounds(table: Family, name: str) -> dict[int, str]:
+    """Rows that another value of one measurement takes beyond its column's bound or its yarns' spacing, and why."""
+    rows = RowValues.of(table)
+
+    def faults(rule: Rule) -> list[tuple[int, str]]:
+        return rule.faults(rows, lambda row: f"{rows.values[rule.column][row]:.4g}")
+
+    refused = dict(faults(BOUNDS[name]))
+    for rule in SPACING.values():
+        for row, message in faults(rule):
+            refused.setdefault(row, f"{rule.column}: {message}")
+    return refused

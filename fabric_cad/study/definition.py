@@ -8,19 +8,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..cell.pipeline import find_row
-from ..measured.tables import FLOAT_GAPS, MEASURED, OTHER_UNITS, SECTIONS, WEAVE_COLUMNS, Family, is_safe_name
+from ..measured.columns import CHOICES, MEASURED, OTHER_UNITS, WEAVE_COLUMNS, is_safe_name, kept_column
+from ..measured.family import Family
+from ..measured.rules import bound_fault
 from ..simulation.settings import Settings, read_settings
 from ..support.errors import InputError, Problem, did_you_mean, quoted
 from ..support.toml_files import read_toml
-from ..weave.weaves import DIRECTIONS
+from ..weave.faults import weave_fault
 from .design import DESIGNS, RANDOM
 from .factors import Factor, Normal, Uniform, Values
 from .names import figure_fault
-from .rows import CHOICES, base_value, kept_column, weave_cells, weave_fault
+from .rows import base_value, weave_cells
 from .units import DEPTHS, Work
 
 _MESH = {"size": float, "across": int, "crossing": int, "through": int, "gap": int}
-_TEXTS = {"section": SECTIONS, "float_gap": FLOAT_GAPS, "thicker": DIRECTIONS}
 _FACTOR_KEYS = {"uniform": ("from", "to", "steps"), "normal": ("mean", "std")}
 MOST_UNITS = 10_000_000
 """Most units a study may have."""
@@ -241,7 +242,7 @@ class _Reader:
         if not isinstance(value, list) or not value:
             self.wrong(f"{quoted(value)} is not a list of values, as this column needs", key, shown)
             return None
-        known, before = _TEXTS.get(column), len(self.problems)
+        known, before = CHOICES.get(column), len(self.problems)
         kind = str if known or column == "pattern" else int
         for each in value:
             if not _is(each, kind):
@@ -297,8 +298,8 @@ class _Reader:
         """What the column's bounds say of one value; the rest of its row is the unit's own business."""
         if not _is(value, float):
             self.wrong(f"{quoted(value)} is not a number", key, shown)
-        elif value < 0 or (value == 0 and "_offset_" not in column):
-            self.wrong(f"{value:g} is {'below' if '_offset_' in column else 'not above'} 0", key, shown)
+        elif fault := bound_fault(column, value):
+            self.wrong(fault, key, shown)
 
     def scatter(self, base: Family, column: str, key: str, shown: str) -> tuple[float, float] | None:
         """Mean and standard deviation of the base row's measurement, in the unit of the column."""

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from math import gcd
 
 import numpy as np
 
-from ..measured.bounds import out_of_bounds
-from ..measured.tables import MEASURED, MOST_YARNS, OTHER_UNITS, WEAVE_COLUMNS, Family
+from ..measured.columns import MEASURED, WEAVE_COLUMNS, kept_column
+from ..measured.family import Family
+from ..measured.rules import out_of_bounds
 from ..support.errors import Problem
-from ..weave.patterns import read_pattern, size_fault, written
-from ..weave.weaves import Weave, pattern_faults, weave_of
+from ..weave.faults import weave_fault
+from ..weave.patterns import read_pattern, written
+from ..weave.weaves import Weave, weave_of
 from .design import Samples
 
-CHOICES = {"section": "sections", "float_gap": "float_gaps", "thicker": "thicker"}
-"""Columns of texts a factor may choose among."""
-
-
-def kept_column(column: str) -> tuple[str, float]:
-    """The column in which a measurement is kept, and the factor from the written unit to its own."""
-    return OTHER_UNITS.get(column, (column, 1.0))
+_FIELDS = {"section": "sections", "float_gap": "float_gaps", "thicker": "thicker"}
+"""Where a table keeps its columns of choices."""
 
 
 def weave_cells(base: Family) -> dict[str, object]:
@@ -39,8 +34,8 @@ def base_value(base: Family, column: str) -> object:
     """What the base row has in a column, in the unit of that column."""
     if column in WEAVE_COLUMNS[base.family]:
         return weave_cells(base)[column]
-    if column in CHOICES:
-        return getattr(base, CHOICES[column])[0]
+    if column in _FIELDS:
+        return getattr(base, _FIELDS[column])[0]
     kept, unit = kept_column(column)
     return float(base.measured[kept][0]) / unit
 
@@ -55,8 +50,8 @@ def study_rows(base: Family, samples: Samples) -> tuple[Family, dict[int, Proble
     repeated = base.take([0] * units)
     measured, choices = dict(repeated.measured), {}
     for column, values in samples.values.items():
-        if column in CHOICES:
-            choices[CHOICES[column]] = tuple(values.tolist())
+        if column in _FIELDS:
+            choices[_FIELDS[column]] = tuple(values.tolist())
         elif column not in WEAVE_COLUMNS[base.family]:
             kept, unit = kept_column(column)
             measured[kept] = np.asarray(values, dtype=float) * unit
@@ -93,27 +88,3 @@ def _weaves(base: Family, samples: Samples) -> tuple[tuple[Weave, ...], dict[int
         if fault:
             faults[at] = fault
     return tuple(weaves), faults
-
-
-def weave_fault(family: str, cells: Mapping[str, object]) -> tuple[str, str] | None:
-    """(column, message) of what makes weave cells no weave."""
-    if family == "pattern":
-        try:
-            pattern = read_pattern(str(cells["pattern"]))
-        except ValueError as error:
-            return "pattern", str(error)
-        if fault := size_fault(str(cells["pattern"]), pattern, MOST_YARNS):
-            return "pattern", fault
-        return next((("pattern", fault) for fault in pattern_faults(pattern)), None)
-    for column, value in cells.items():
-        if not 1 <= value <= MOST_YARNS:
-            return column, f"{value} is not between 1 and {MOST_YARNS}"
-    if family == "satin":
-        harness, step = cells["harness"], cells["step"]
-        if harness < 3:
-            return "harness", f"{harness} is not at least 3"
-        if step >= harness:
-            return "step", f"{step} is not below the harness {harness}"
-        if gcd(harness, step) != 1:
-            return "step", f"{step} is not coprime to the harness {harness}"
-    return None
