@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from ..support.numerals import number, whole
 from .voice import Voice
@@ -38,7 +38,7 @@ class MeshedRowOptions(RowOptions):
     gap: int | None = None
 
     @property
-    def mesh(self) -> dict[str, float]:
+    def mesh(self) -> dict[str, Any]:
         """What is said of the mesh, as keywords of :func:`fabric_cad.mesh_options`."""
         asked = {argument.name: getattr(self, argument.name) for argument in MESH_ARGUMENTS}
         return {name: value for name, value in asked.items() if value is not None}

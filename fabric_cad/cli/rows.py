@@ -72,7 +72,7 @@ def _solved(table: Family, errors: list[InputError], partial: bool) -> tuple[Fam
         identified = identify_rows(table)
         refused = [*table.refused, *identified.refused.values()]
         if refused:
-            errors.append(InputError(sorted(refused, key=lambda problem: problem.line)))
+            errors.append(InputError(sorted(refused, key=lambda problem: problem.line or 0)))
         table = table.take(identified.rows.tolist())
 
     return table, identify(table)

@@ -18,7 +18,7 @@ _HEADER = ("row", "weave", "section", "model", "identified by", "thickness mm")
 def run(options: Options, voice: Voice) -> int:
     """Print a line for every row; raises :class:`InputError` with what is wrong with others."""
     tables = read_tables(options, voice, partial=True)
-    lines = [_HEADER]
+    lines: list[tuple[str, ...]] = [_HEADER]
     for family, (measured, table) in tables.solved.items():
         lines += _lines(family, measured, table)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...support.errors import InputError
+from ...support.errors import InputError, Problem
 from ..options import Command, Options
 from ..rows import raise_together, read_tables
 from ..voice import Voice
@@ -19,7 +19,7 @@ def run(options: Options, voice: Voice) -> int:
     errors = list(tables.errors)
     comparisons: Lines = []
     spreads: Lines = []
-    notes: list[str] = []
+    notes: list[Problem] = []
     differences: list[float] = []  # %
 
     for measured, table in tables.solved.values():
