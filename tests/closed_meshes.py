@@ -10,7 +10,6 @@ import argparse
 
 import numpy as np
 from fabrics import random_general_row, skin_of, table
-from scipy.interpolate import BSpline
 
 from fabric_cad.meshing.options import mesh_options
 from fabric_cad.meshing.plan import plan_yarns
@@ -27,12 +26,8 @@ def outline_of(fabric, plan):
     for patch in skin_of(fabric, plan.yarn).patches:
         slots, columns = plan.strips[patch.side]
         layers = plan.layers[patch.segment]
-        homogeneous = patch.poles * np.where(np.arange(4) < 3, patch.poles[..., 3:], 1.0)
-        (along, along_degree), (across, across_degree) = patch.along, patch.across
-        rows = BSpline(along, homogeneous, along_degree)(along[0] + (along[-1] - along[0]) * layers)
-        points = BSpline(across, rows, across_degree, axis=1)(across[0] + (across[-1] - across[0]) * columns)
         first = plan.rows[patch.segment]
-        places[np.arange(first, first + len(layers))[:, None], slots] = points[..., :3] / points[..., 3:]
+        places[np.arange(first, first + len(layers))[:, None], slots] = patch.at(layers, columns)
     return places
 
 

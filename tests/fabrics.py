@@ -157,10 +157,9 @@ DRAWS = {
 
 def skin_of(fabric, yarn):
     """The skin of one yarn of a fabric."""
-    from fabric_cad.yarn.sweeps import control_planes, control_sections, skin, trajectory
+    from fabric_cad.yarn.swept import SweptYarn
 
-    planes = control_planes(fabric, yarn)
-    return skin(trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes))
+    return SweptYarn(fabric, yarn).skin
 
 
 def section_area(section) -> float:

@@ -25,7 +25,8 @@ from fabric_cad.model.solved import read_solved
 from fabric_cad.support.staging import staged
 from fabric_cad.weave.weaves import yarns_of
 from fabric_cad.yarn.edges import allowed_scaled_jacobian
-from fabric_cad.yarn.sweeps import contact_patches, control_planes, control_sections, skin, trajectory
+from fabric_cad.yarn.planes import contact_patches
+from fabric_cad.yarn.swept import SweptYarn, swept_yarns
 
 ROWS = [name for table in read_families(shipped_families()).values() for name in table.names]
 
@@ -120,14 +121,14 @@ def test_volumes_are_those_of_the_model(made):
 
     solids = read_step(made.file("step"))
     fabric = made.fabric
-    for yarn in yarns_of(fabric.weave.interlacement()):
-        planes = control_planes(fabric, yarn)
-        areas = [section_area(section) for section in control_sections(fabric, yarn, planes)]
+    for swept in swept_yarns(fabric):
+        planes = swept.planes
+        areas = [section_area(section) for section in swept.sections]
         expected = sum(
             (after.place - before.place) * (first + second) / 2
             for before, after, first, second in zip(planes, planes[1:], areas, areas[1:])
         )
-        solid = solids[yarn.name]
+        solid = solids[swept.yarn.name]
         assert solid.isValid()
         # rational sections do not blend linearly, their weights being close but not the same
         assert solid.Volume(1e-9) == pytest.approx(expected, rel=1e-6 if fabric.section != "round" else 1e-3)
@@ -171,10 +172,8 @@ def test_step_has_names_colours_and_common_tangents(made):
             assert np.degrees(np.arccos(min(1.0, abs(one @ other)))) < 0.01
             checked += 1
     yarn = yarns_of(made.fabric.weave.interlacement())[0]
-    planes = control_planes(made.fabric, yarn)
-    sections = control_sections(made.fabric, yarn, planes)
-    patches = skin(trajectory(made.fabric, yarn, planes), sections).patches
-    assert checked == 3 * (len(patches) - len(sections[0].strips))
+    swept = SweptYarn(made.fabric, yarn)
+    assert checked == 3 * (len(swept.skin.patches) - len(swept.sections[0].strips))
 
 
 def test_step_is_small(twill32):

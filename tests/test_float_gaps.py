@@ -27,7 +27,8 @@ from fabric_cad.model.solved import read_solved
 from fabric_cad.pictures.plots import plot_edges
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import yarns_of
-from fabric_cad.yarn.sweeps import control_planes, control_sections, trajectory
+from fabric_cad.yarn.planes import control_planes
+from fabric_cad.yarn.swept import SweptYarn
 from fabric_cad.yarn.volumes import yarn_volumes
 
 FORMS = {
@@ -74,8 +75,8 @@ def test_edges_run_straight_where_the_crossed_yarn_floats_on(draw, seed):
     share = np.linspace(0.0, 1.0, 9)
     yarns = yarns_of(fabric.weave.interlacement())
     for yarn in (yarns[0], yarns[-1]):
-        planes = control_planes(fabric, yarn)
-        path, surface = trajectory(fabric, yarn, planes), skin_of(fabric, yarn)
+        swept = SweptYarn(fabric, yarn)
+        planes, path, surface = swept.planes, swept.trajectory, swept.skin
         for segment, crossing in float_half_gaps(yarn, planes):
             # heights from the side that is touched
             touched, sign = ("lower", 1) if yarn.high[crossing] else ("upper", -1)
@@ -113,8 +114,8 @@ def with_gap(drawn, gap):
 def test_mid_gap_stands_the_section_of_a_flat_contact():
     fabric = identify(flat_twill(over=3, under=2))["twill32"]
     yarn = yarns_of(fabric.weave.interlacement())[0]  # over warps 1, 2, 3, under 4, 5
-    planes = control_planes(fabric, yarn)
-    sections = control_sections(fabric, yarn, planes)
+    swept = SweptYarn(fabric, yarn)
+    planes, sections = swept.planes, swept.sections
     in_gaps = [section for plane, section in zip(planes, sections) if plane.crossing is None]
     assert in_gaps[0] is in_gaps[3] is in_gaps[5]  # two changes of side, at the cut and after warp 3
     assert in_gaps[1] is in_gaps[2] and in_gaps[4] not in (in_gaps[0], in_gaps[1])
@@ -175,9 +176,9 @@ def test_volumes_are_those_of_the_solids(made):
     if row.sections[0] == "round":
         fabric = identify(row)["twill32"]
         for yarn in yarns_of(fabric.weave.interlacement()):
-            planes = control_planes(fabric, yarn)
-            areas = [section_area(section) for section in control_sections(fabric, yarn, planes)]
-            lengths = np.diff([plane.place for plane in planes])
+            swept = SweptYarn(fabric, yarn)
+            areas = [section_area(section) for section in swept.sections]
+            lengths = np.diff([plane.place for plane in swept.planes])
             expected = float(lengths @ np.add(areas[1:], areas[:-1])) / 2
             # rational sections do not blend linearly, their weights being close but not the same
             assert solids[yarn.name].Volume(1e-9) == pytest.approx(expected, rel=1e-3)

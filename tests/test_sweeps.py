@@ -11,7 +11,8 @@ from fabric_cad.model.identification import identify
 from fabric_cad.pictures.plots import section_outline
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import Weave, yarns_of
-from fabric_cad.yarn.sweeps import contact_segment, control_planes, control_sections, trajectory
+from fabric_cad.yarn.planes import contact_segment
+from fabric_cad.yarn.swept import SweptYarn, swept_yarns
 
 seeds = st.integers(0, 2**32 - 1)
 DRAWS = {
@@ -107,7 +108,7 @@ def test_sections_fill_their_envelope_and_nothing_else(draw, seed):
     yarns = yarns_of(fabric.weave.interlacement())
     for yarn in (yarns[0], yarns[-1]):
         solved = fabric.directions[yarn.direction]
-        for section in control_sections(fabric, yarn, control_planes(fabric, yarn)):
+        for section in SweptYarn(fabric, yarn).sections:
             v, z = section_outline(section, 801)
             assert (v.min(), v.max()) == pytest.approx((-solved.width / 2, solved.width / 2), rel=1e-9)
             assert (z.min(), z.max()) == pytest.approx((-solved.thickness / 2, solved.thickness / 2), rel=1e-5)
@@ -126,7 +127,7 @@ def test_round_sections_are_smooth_all_around(seed):
     yarns = yarns_of(fabric.weave.interlacement())
     joints = [("bottom", "right_lower"), ("left_lower", "bottom"), ("top", "right_upper"), ("left_upper", "top")]
     for yarn in (yarns[0], yarns[-1]):
-        for section in control_sections(fabric, yarn, control_planes(fabric, yarn)):
+        for section in SweptYarn(fabric, yarn).sections:
             for before, after in joints:
                 first, second = section.strips[before].poles, section.strips[after].poles
                 assert first[-1, :2] == pytest.approx(second[0, :2], abs=1e-12)
@@ -143,7 +144,7 @@ def test_the_trajectory_passes_the_control_points():
     fabric = identify(table("twill", TWILL32))["twill32"]
     yarn = yarns_of(fabric.weave.interlacement())[0]  # over warps 1, 2, 3, under 4, 5
     assert yarn.high == (True, True, True, False, False)
-    path = trajectory(fabric, yarn, control_planes(fabric, yarn))
+    path = SweptYarn(fabric, yarn).trajectory
 
     def z(x):
         piece = next(p for p in path.pieces if p.knots[0] <= x <= p.knots[-1])
@@ -170,3 +171,21 @@ def test_weaves_that_are_none():
     for numbers in ((0, 1), (1, 0), (1, 7, 2)):
         with pytest.raises(ValueError):
             Weave(*numbers)
+
+
+@rows
+@given(seed=seeds)
+@settings(max_examples=10, deadline=None)
+def test_a_swept_yarn_is_made_once_and_starts_and_ends_in_its_sections(draw, seed):
+    fabric = fabric_of(draw, seed)
+    share = np.linspace(0, 1, 5)
+    for swept in swept_yarns(fabric)[:2]:
+        assert swept.skin is swept.skin and swept.trajectory.planes is swept.planes
+        assert len(swept.sections) == len(swept.planes) == len(swept.trajectory.pieces) + 1
+
+        for patch in swept.skin.patches:
+            piece = swept.trajectory.pieces[patch.segment]
+            for end, place in ((0, piece.poles[0]), (1, piece.poles[-1])):
+                strip = swept.sections[patch.segment + end].strips[patch.side]
+                expected = strip.at(share) + [0.0, place]
+                np.testing.assert_allclose(patch.at([end], share)[0, :, 1:], expected, rtol=0, atol=1e-12)

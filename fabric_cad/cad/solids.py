@@ -12,7 +12,8 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_A
 
 from ..section.sections import Section
 from ..support.errors import BuildError
-from ..yarn.sweeps import Patch, Skin, Trajectory, skin
+from ..yarn.skin import Patch, Skin, skin
+from ..yarn.trajectory import Trajectory
 
 _SEWING_TOLERANCE = 1e-7  # mm, OCCT's confusion; the edges sewn agree to rounding
 

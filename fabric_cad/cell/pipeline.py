@@ -18,7 +18,7 @@ from ..model.solved import SolvedFabric, SolvedTable, read_solved
 from ..support.errors import InputError, Problem, did_you_mean, quoted
 from ..support.interrupts import uninterrupted
 from ..support.staging import staged
-from ..yarn.sweeps import contact_patches
+from ..yarn.planes import contact_patches
 
 if TYPE_CHECKING:
     from ..cad import Consistency

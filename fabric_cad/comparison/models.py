@@ -31,7 +31,8 @@ import numpy as np
 from ..model.solved import Direction, SolvedFabric
 from ..support.errors import BuildError
 from ..weave.weaves import Yarn, yarns_of
-from ..yarn.sweeps import control_planes, control_sections, skin, trajectory
+from ..yarn.planes import control_planes
+from ..yarn.swept import SweptYarn
 
 POINTS = 192
 """Points of the grid along either side of a crossing: volumes are then right to 0.1 %, the
@@ -136,8 +137,7 @@ def _present(fabric: SolvedFabric, yarn: Yarn, t: np.ndarray, v: np.ndarray) -> 
     """Heights of a yarn of the present model: the patches that its solid is made of."""
     from scipy.interpolate import BSpline
 
-    planes = control_planes(fabric, yarn)
-    surface = skin(trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes))
+    surface = SweptYarn(fabric, yarn).skin
     found = {level: np.full((len(t), len(v)), np.nan) for level in ("lower", "upper")}
     sheet = {"bottom": "lower", "top": "upper"}
     for patch in surface.patches:
@@ -146,8 +146,7 @@ def _present(fabric: SolvedFabric, yarn: Yarn, t: np.ndarray, v: np.ndarray) -> 
         here = np.flatnonzero((t >= knots[0]) & (t <= knots[-1]))
         if level not in found or not len(here):
             continue
-        poles = patch.poles * np.where(np.arange(4) < 3, patch.poles[..., 3:], 1.0)
-        rows = BSpline(knots, poles, degree)(t[here])
+        rows = BSpline(knots, patch.homogeneous, degree)(t[here])
         if np.ptp(patch.poles[..., [1, 3]], axis=0).max() == 0:  # one section all along
             curve = BSpline(across, rows.transpose(1, 0, 2), across_degree)
             at, inside = _across_parameter(curve, v)

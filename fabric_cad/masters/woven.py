@@ -13,17 +13,15 @@ import numpy as np
 from fabric_cad.cad import Cell, assemble, sweep
 from fabric_cad.model.solved import SolvedFabric
 from fabric_cad.weave.weaves import yarns_of
-from fabric_cad.yarn.sweeps import control_planes, control_sections, trajectory
+from fabric_cad.yarn.swept import SweptYarn
 
 
 def woven(fabric: SolvedFabric, weft_over_warp: np.ndarray) -> Cell:
     """The cell of a fabric; ``weft_over_warp[i, j]`` is True where weft i passes over warp j."""
     yarns = {}
     for yarn in yarns_of(weft_over_warp):
-        planes = control_planes(fabric, yarn)  # where along the yarn
-        path = trajectory(fabric, yarn, planes)  # M11 ... M16 or M21 ... M26, over the whole cell
-        sections = control_sections(fabric, yarn, planes)  # one in each of them
-        yarns[yarn.name] = sweep(path, sections)
+        swept = SweptYarn(fabric, yarn)
+        yarns[yarn.name] = sweep(swept.trajectory, swept.sections)
     return assemble(yarns, fabric.name)
 
 

@@ -10,7 +10,9 @@ import numpy as np
 from ..model.solved import SolvedFabric
 from ..section.sections import Frame, Section
 from ..weave.weaves import DIRECTIONS, Yarn
-from ..yarn.sweeps import Skin, contact_segment, control_planes, control_sections, skin, trajectory
+from ..yarn.planes import contact_segment
+from ..yarn.skin import Skin
+from ..yarn.swept import SweptYarn
 from .count import chord_ends, column_counts, lateral_count
 from .options import MeshOptions
 from .rings import Span, fill_rings
@@ -69,10 +71,8 @@ def plan_yarns(fabric: SolvedFabric, yarns: Sequence[Yarn], options: MeshOptions
 
 
 def _plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
-    planes = control_planes(fabric, yarn)
-    path = trajectory(fabric, yarn, planes)
-    sections = control_sections(fabric, yarn, planes)
-    surface = skin(path, sections)
+    swept = SweptYarn(fabric, yarn)
+    planes = swept.planes
     frame, crossed = fabric.frame(yarn.direction), "warp" if yarn.direction == "weft" else "weft"
     across = {"weft": options.across, "warp": options.crossing}
     gap = np.linspace(0.0, 1.0, options.gap // 2 + 1)
@@ -85,14 +85,14 @@ def _plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
     contacts = [(contact_segment(planes, k), "bottom" if high else "top") for k, high in enumerate(yarn.high)]
     return Plan(
         yarn=yarn,
-        sections=sections,
+        sections=swept.sections,
         places=np.array([plane.place for plane in planes]),
         layers=tuple(layers),
         template=template,
         strips=strips,
         contacts=tuple(contacts),
-        middles=_middles(surface, len(layers)),
-        centre=path.axis,
+        middles=_middles(swept.skin, len(layers)),
+        centre=swept.trajectory.axis,
     )
 
 
@@ -170,14 +170,10 @@ def _outline(
 
 def _middles(surface: Skin, segments: int) -> tuple[tuple[list[str], np.ndarray], ...]:
     """Per segment, its sides and the points (v, z) at the middle of their parameters."""
-    from scipy.interpolate import BSpline
-
+    centre = np.array([0.5])
     found: list[tuple[list[str], list]] = [([], []) for _ in range(segments)]
     for patch in surface.patches:
-        homogeneous = patch.poles * np.where(np.arange(4) < 3, patch.poles[..., 3:], 1.0)
-        (ku, du), (kv, dv) = patch.along, patch.across
-        point = BSpline(kv, BSpline(ku, homogeneous, du)((ku[0] + ku[-1]) / 2), dv)((kv[0] + kv[-1]) / 2)
         sides, middles = found[patch.segment]
         sides.append(patch.side)
-        middles.append(point[1:3] / point[3])
+        middles.append(patch.at(centre, centre)[0, 0, 1:])
     return tuple((sides, np.array(middles)) for sides, middles in found)

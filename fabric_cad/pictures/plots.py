@@ -20,7 +20,7 @@ from ..section.splines import Spline
 from ..support.series import valid_until
 from ..weave.colours import COLOURS
 from ..weave.weaves import DIRECTIONS, Yarn, direction_of, yarns_of
-from ..yarn.sweeps import control_planes, control_sections, trajectory
+from ..yarn.swept import SweptYarn
 
 _POINTS = 41
 _ACROSS = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 301)) / 2  # of a width, closer towards the edges
@@ -108,8 +108,8 @@ def plot_sections(fabric: SolvedFabric, axes, direction: str = "weft") -> None:
 def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 1) -> None:
     """A cut through the cell along the axis of one yarn: its own profile and the sections it crosses (Fig. 15, 18)."""
     yarn = _yarn(fabric, direction, number)
-    planes = control_planes(fabric, yarn)
-    path, sections = trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes)
+    swept = SweptYarn(fabric, yarn)
+    path, sections = swept.trajectory, swept.sections
     t, bottom, top = [], [], []
     for piece, first, second in zip(path.pieces, sections, sections[1:]):
         x, z = sample(piece)
@@ -124,10 +124,9 @@ def plot_cut(fabric: SolvedFabric, axes, direction: str = "weft", number: int = 
     crossed_direction = DIRECTIONS[1 - DIRECTIONS.index(direction)]
     crossed = fabric.directions[crossed_direction]
     for k, high in enumerate(yarn.high):
-        other = _yarn(fabric, crossed_direction, k + 1)
-        other_planes = control_planes(fabric, other)
-        at = next(n for n, plane in enumerate(other_planes) if plane.crossing == number - 1)
-        v, z = section_outline(control_sections(fabric, other, other_planes)[at])
+        other = SweptYarn(fabric, _yarn(fabric, crossed_direction, k + 1))
+        met = next(n for n, plane in enumerate(other.planes) if plane.crossing == number - 1)
+        v, z = section_outline(other.sections[met])
         level = crossed.z_low if high else crossed.z_high
         axes.fill(
             (k + 0.5) * fabric.directions[direction].crossed_spacing + v,
@@ -149,8 +148,8 @@ def plot_edges(fabric: SolvedFabric, axes, direction: str = "weft", number: int 
     The gaps between two crossings of one float are grey: there ``float_gap`` decides how the edges run.
     """
     yarn = _yarn(fabric, direction, number)
-    planes = control_planes(fabric, yarn)
-    path, sections = trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes)
+    swept = SweptYarn(fabric, yarn)
+    path, sections = swept.trajectory, swept.sections
 
     heights: dict[str, list[np.ndarray]] = {"midline": [], "left edge": [], "right edge": []}
     along = []

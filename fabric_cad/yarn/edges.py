@@ -13,8 +13,7 @@ import numpy as np
 from ..model.solved import SolvedFabric
 from ..section.sections import Section
 from ..section.splines import Spline
-from ..weave.weaves import yarns_of
-from .sweeps import control_planes, control_sections, trajectory
+from .swept import swept_yarns
 
 _SAMPLES = 257
 
@@ -27,10 +26,9 @@ def allowed_scaled_jacobian(fabric: SolvedFabric) -> float:
     """
     worst = 1.0
     known: set[bytes] = set()
-    for yarn in yarns_of(fabric.weave.interlacement()):
-        planes = control_planes(fabric, yarn)
-        path, sections = trajectory(fabric, yarn, planes), control_sections(fabric, yarn, planes)
-        for piece, first, second in zip(path.pieces, sections, sections[1:]):
+    for swept in swept_yarns(fabric):
+        sections = swept.sections
+        for piece, first, second in zip(swept.trajectory.pieces, sections, sections[1:]):
             shape = [piece.poles - piece.poles[0], piece.knots - piece.knots[0]]
             shape += [_edge(section, *place)[:2] for section in (first, second) for place in _PLACES]
             key = b"".join(np.round(each, 12).tobytes() for each in shape)

@@ -1,6 +1,6 @@
 """Volumes of yarns without CAD: integrals of the section's area along the yarn, whole tables at once.
 
-The skin of :mod:`~fabric_cad.yarn.sweeps` moves a section along the yarn in vertical planes and blends
+The skin of :mod:`~fabric_cad.yarn.skin` moves a section along the yarn in vertical planes and blends
 two sections strip by strip. The strips of pointed and flat sections end at the same places in every
 section of a yarn, so that an area blends as the heights do, and the cubic smoothstep has the mean
 1/2: between two control planes the volume is their distance times the mean of both areas, exactly.
