@@ -17,8 +17,6 @@ import cadquery as cq
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.Geom import Geom_BSplineSurface
-from scipy.interpolate import BSpline
-from scipy.optimize import minimize
 
 from ..support.errors import BuildError
 
@@ -78,8 +76,8 @@ class _Face:
 
     def evaluate(self, u: np.ndarray, v: np.ndarray, along: int = 0, across: int = 0) -> np.ndarray:
         """Homogeneous points, or derivatives of them, on the grid u x v: shape (u, v, 4)."""
-        first = BSpline(self.knots[0], self.poles, self.degrees[0])(u, along)
-        second = BSpline(self.knots[1], first.transpose(1, 0, 2), self.degrees[1])(v, across)
+        first = _spline(self.knots[0], self.poles, self.degrees[0])(u, along)
+        second = _spline(self.knots[1], first.transpose(1, 0, 2), self.degrees[1])(v, across)
         return second.transpose(1, 0, 2)
 
     def parameters(self, along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -89,7 +87,7 @@ class _Face:
         start, end = places[0, 0], places[-1, 0]
         u = ku[0] + (along - start) / (end - start) * (ku[-1] - ku[0])
         low, high = np.full(len(across), kv[0]), np.full(len(across), kv[-1])
-        curve = BSpline(kv, row[:, [1 - self.along, 3]], self.degrees[1])
+        curve = _spline(kv, row[:, [1 - self.along, 3]], self.degrees[1])
         v = low + (across - curve(low)[:, 0]) / (curve(high) - curve(low))[:, 0] * (high - low)
         found = curve(v)
         if np.max(np.abs(found[:, 0] / found[:, 1] - across)) > _PLAN:  # not linear: bisect
@@ -151,6 +149,12 @@ def inspect_cell(
         thickness=_highest(everything, 1.0) + _highest(everything, -1.0),
         yarn_volumes={name: solid.Volume(_VOLUME) for name, solid in solids.items()},
     )
+
+
+def _spline(knots: np.ndarray, poles: np.ndarray, degree: int):
+    from scipy.interpolate import BSpline  # not above: the masters import this door, and CQ-editor unloads it
+
+    return BSpline(knots, poles, degree)
 
 
 def _faces(solid: cq.Solid) -> tuple[_Face, ...]:
@@ -260,7 +264,7 @@ def _knot_lines(face: _Face, axis: int) -> list[float]:
     knots = face.knots[direction]
     places = np.unique(knots)
     row = face.poles[:, 0] if direction == 0 else face.poles[0]
-    curve = BSpline(knots, row[:, [axis, 3]], face.degrees[direction])(places)
+    curve = _spline(knots, row[:, [axis, 3]], face.degrees[direction])(places)
     return (curve[:, 0] / curve[:, 1]).tolist()
 
 
@@ -288,6 +292,8 @@ def _highest(faces: list[_Face], sign: float) -> float:
         i, j = np.unravel_index(z.argmax(), z.shape)
         if z[i, j] > best:
             best, where = z[i, j], (face, u[i], v[j])
+    from scipy.optimize import minimize
+
     face, *start = where
 
     def depth(at):

@@ -48,14 +48,15 @@ def _face(patch: Patch, surface: Skin) -> cq.Face:
             across = v + surface.axis
             poles.SetValue(i, j, gp_Pnt(t, across, z) if weft else gp_Pnt(across, t, z))
             weights.SetValue(i, j, weight)
-    (u_knots, u_times), (v_knots, v_times) = _knots(patch.along[0]), _knots(patch.across[0])
+    (u_knots, u_times), (v_knots, v_times) = knots_and_times(patch.along[0]), knots_and_times(patch.across[0])
     knots = u_knots, v_knots, u_times, v_times, patch.along[1], patch.across[1]
     rational = (patch.poles[..., 3] != 1.0).any()
     spline = Geom_BSplineSurface(poles, weights, *knots) if rational else Geom_BSplineSurface(poles, *knots)
     return cq.Face(BRepBuilderAPI_MakeFace(spline, _SEWING_TOLERANCE).Face())
 
 
-def _knots(knots: np.ndarray) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
+def knots_and_times(knots: np.ndarray) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
+    """The distinct knots and how often each stands, as OCCT takes them."""
     distinct, times = np.unique(knots, return_counts=True)
     values = TColStd_Array1OfReal(1, len(distinct))
     multiplicities = TColStd_Array1OfInteger(1, len(distinct))

@@ -1,31 +1,117 @@
-"""What the masters share: control planes, control sections, trajectory, sweep.
+"""What the masters share: every yarn drawn by CadQuery, swept, and shown.
 
 Every yarn of the elementary cell is cut by control planes: mid-gap, begin and end of each
 crossing (paper, Fig. 12). In each plane stands a control section (Fig. 9, 13), and the
-sections are swept along the trajectory (Fig. 11). Which yarn lies on top at each crossing
-is all that a master adds.
+sections are swept along the trajectory (Fig. 11). Which yarn lies on top at each crossing,
+and which section stands in a plane, is what a master says.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
 
-from fabric_cad.cad import Cell, assemble, sweep
-from fabric_cad.model.solved import SolvedFabric
-from fabric_cad.weave.weaves import yarns_of
+import cadquery as cq
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fabric_cad.cad.drawing import edge_of, planes_of, sweep_multisection, wire_of
+from fabric_cad.cad.solids import sweep
+from fabric_cad.cad.step import Cell, assemble
+from fabric_cad.model.solved import SolvedFabric, read_solved
+from fabric_cad.section.sections import Section
+from fabric_cad.support.errors import ArgumentError, InputError, Problem
+from fabric_cad.weave.colours import COLOURS
+from fabric_cad.weave.weaves import direction_of, yarns_of
 from fabric_cad.yarn.swept import SweptYarn
 
+SWEEPS = ("exact", "multisection")
+"""The exact skin of the model, or CadQuery's own sweep through the same wires.
 
-def woven(fabric: SolvedFabric, weft_over_warp: np.ndarray) -> Cell:
-    """The cell of a fabric; ``weft_over_warp[i, j]`` is True where weft i passes over warp j."""
-    yarns = {}
-    for yarn in yarns_of(weft_over_warp):
+In a weft of the row ``plain`` points of the exact skin lie up to 0.062 mm outside the multisection
+sweep (nine a patch, tests/test_masters.py).
+"""
+
+Sections = Callable[[SweptYarn, int], Section]
+"""The section in a yarn's control plane of a number, from 0."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """A yarn of a cell in CadQuery's terms, mm."""
+
+    name: str
+    planes: list[cq.Plane]
+    wires: list[cq.Wire]
+    path: cq.Edge
+
+    @property
+    def frame(self) -> tuple[float, float]:
+        """Extents to draw a control plane with, half as large again as the section in it, mm."""
+        box = self.wires[0].BoundingBox()
+        return 1.5 * max(box.xlen, box.ylen), 1.5 * box.zlen
+
+
+def own(swept: SweptYarn, number: int) -> Section:
+    """The model's own control section in a plane."""
+    return swept.sections[number]
+
+
+def draw(fabric: SolvedFabric, weft_over_warp: ArrayLike, section: Sections = own) -> dict[str, Drawing]:
+    """Yarn name to its planes, wires and trajectory, wefts first."""
+    drawings = {}
+    for yarn in yarns_of(np.asarray(weft_over_warp)):
         swept = SweptYarn(fabric, yarn)
-        yarns[yarn.name] = sweep(swept.trajectory, swept.sections)
-    return assemble(yarns, fabric.name)
+        planes = planes_of(swept.trajectory)
+        wires = [wire_of(drawn, plane) for drawn, plane in zip(_sections(swept, section), planes)]
+        drawings[yarn.name] = Drawing(yarn.name, planes, wires, edge_of(swept.trajectory))
+    return drawings
 
 
-def show(cell: Cell, show_object) -> None:
-    """Hand every yarn of a cell to CQ-editor under its name and in its colour."""
-    for part in cell.assembly.children:
-        show_object(part.obj, name=part.name, options={"color": tuple(int(255 * c) for c in part.color.toTuple()[:3])})
+def woven(
+    fabric: SolvedFabric,
+    weft_over_warp: ArrayLike,
+    section: Sections = own,
+    kind: str = "exact",
+) -> Cell:
+    """The cell of a fabric; ``weft_over_warp[i][j]`` is True where weft i passes over warp j.
+
+    Raises ArgumentError where ``kind`` is none of :data:`SWEEPS`, BuildError where OCCT makes no
+    valid solid of a yarn.
+    """
+    if kind not in SWEEPS:
+        raise ArgumentError(f"a sweep is {' or '.join(SWEEPS)}, not {kind!r}")
+
+    if kind == "multisection":
+        drawings = draw(fabric, weft_over_warp, section).values()
+        solids = {yarn.name: sweep_multisection(yarn.wires, yarn.path) for yarn in drawings}
+        return assemble(solids, fabric.name)
+
+    solids = {}
+    for yarn in yarns_of(np.asarray(weft_over_warp)):
+        swept = SweptYarn(fabric, yarn)
+        solids[yarn.name] = sweep(swept.trajectory, _sections(swept, section))
+    return assemble(solids, fabric.name)
+
+
+def solved_row(path: str) -> SolvedFabric:
+    """The solved row at a path, sought from the working folder, then from this file, upwards.
+
+    Raises InputError that says how to get one where there is none.
+    """
+    for folder in (Path.cwd(), *Path.cwd().parents, *Path(__file__).resolve().parents):
+        if (folder / path).is_file():
+            return read_solved(folder / path)
+
+    name = Path(path).parent.name
+    raise InputError(Problem(f"no solved row yet; 'fabric-cad cell {name}' writes one", path))
+
+
+def colour_of(name: str) -> tuple[int, ...]:
+    """Red, green and blue of a yarn, 0 to 255."""
+    return tuple(int(255 * share) for share in COLOURS[direction_of(name)][:3])
+
+
+def _sections(swept: SweptYarn, section: Sections) -> tuple[Section, ...]:
+    return tuple(section(swept, number) for number in range(len(swept.planes)))
