@@ -7,7 +7,7 @@ from stability import try_fabric
 @pytest.mark.parametrize(
     ("part", "seed"),
     [("standard", seed) for seed in range(6)]
-    + [("general", seed) for seed in (*range(6), 195)]
+    + [("general", seed) for seed in (1, 2, 3, 5, 195)]  # 0 and 4 take minutes
     + [("narrow", 0), ("unequal", 0)]
     + [("patterns", 45), ("patterns", 58), ("flat-gaps", 23), ("flat-gaps", 30)],  # of few yarns
 )

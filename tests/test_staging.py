@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from fabric_cad import folders, locks, staging, working
+from fabric_cad.support import folders, locks, staging, working
 from fabric_cad.support.errors import OutputError
 from fabric_cad.support.interrupts import Stopped, stoppable, uninterrupted
 
