@@ -26,7 +26,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file",
         metavar="STUDY.toml",
-        help="base row, factors, design and depth (README, 'Studies')",
+        help="base row, factors, design and depth (docs/studies.md)",
     )
     parser.add_argument(
         "--scheduler",
