@@ -4,8 +4,15 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from fabric_cad.meshing.mesh import Mesh
+from fabric_cad.weave.bodies import Body, Surface
 
 LENGTH, WIDTH, HEIGHT = 4.0, 2.0, 0.5
+
+
+def mesh_named(points, hexahedra, body, names, surfaces):
+    """A mesh whose bodies and surfaces are given by their names."""
+    named = {Surface.named(name): quads for name, quads in surfaces.items()}
+    return Mesh(points, hexahedra, body, tuple(map(Body.named, names)), named)
 
 
 def box(name, place=(0.0, 0.0, 0.0), turn=0.0, parts=(8, 6, 2)):
@@ -27,7 +34,7 @@ def box(name, place=(0.0, 0.0, 0.0), turn=0.0, parts=(8, 6, 2)):
         f"{name}_start": quads(number[0]),
         f"{name}_end": quads(number[-1]),
     }
-    return Mesh(points, hexahedra, np.zeros(len(hexahedra), dtype=int), (name,), surfaces)
+    return mesh_named(points, hexahedra, np.zeros(len(hexahedra), dtype=int), (name,), surfaces)
 
 
 def together(*meshes):
@@ -37,6 +44,6 @@ def together(*meshes):
         np.vstack([mesh.points for mesh in meshes]),
         np.vstack([mesh.hexahedra + n for mesh, n in zip(meshes, first)]),
         np.repeat(np.arange(len(meshes)), [len(mesh.hexahedra) for mesh in meshes]),
-        tuple(mesh.yarns[0] for mesh in meshes),
+        tuple(mesh.bodies[0] for mesh in meshes),
         {name: quads + n for mesh, n in zip(meshes, first) for name, quads in mesh.surfaces.items()},
     )

@@ -4,11 +4,11 @@ import sys
 
 import numpy as np
 import pytest
+from meshes import mesh_named
 
 import fabric_cad
 from fabric_cad import ArgumentError, InputError, identify, measured_fabric
 from fabric_cad.measured.tables import MEASURED
-from fabric_cad.meshing import Mesh
 
 MINE = {"over": 2, "under": 2, "weft_density_per_mm": 0.35, "weft_width_mm": 2.4, "weft_crimp_percent": 0.4}
 
@@ -98,7 +98,7 @@ def mesh():
     cube = [0, 2, 3, 1]  # of a layer of nodes at one x, counted about it
     first = [[*cube, *(n + 4 for n in cube)], [*(n + 4 for n in cube), *(n + 8 for n in cube)]]
     second = [[n + len(points) for n in first[0]]]
-    return Mesh(
+    return mesh_named(
         np.vstack([points, points + [0, 0, 0.5]]),
         np.array(first + second),
         np.array([0, 0, 1]),
@@ -118,7 +118,7 @@ def test_a_mesh_for_pyvista(mesh):
     assert list(grid.field_data["yarn_names"]) == ["weft_1", "warp_1"]
     assert np.array_equal(grid.cell_data["fibre_axis"], mesh.fibre_axes())
     blocks = mesh.to_pyvista(surfaces=True)
-    assert blocks.keys() == ["yarns", *mesh.surfaces]
+    assert blocks.keys() == ["yarns", *(surface.name for surface in mesh.surfaces)]
     contact = blocks["weft_1_contact"]
     assert contact.n_cells == 2 and contact.area == pytest.approx(2.0)
     assert np.array_equal(mesh.points[contact.point_data["node"]], contact.points)
@@ -133,10 +133,10 @@ def test_a_mesh_for_meshio(mesh, tmp_path):
     assert np.array_equal(read.cells_dict["hexahedron"], mesh.hexahedra)
     assert [len(block.data) for block in whole.cells] == [3, 4]
     assert [values.tolist() for values in whole.cell_data["yarn"]] == [[1, 1, 2], [1, 1, 1, 2]]
-    for number, name in enumerate(mesh.yarns):
-        assert np.array_equal(whole.cell_sets[name][0], np.flatnonzero(mesh.yarn == number))
-    for name, quads in mesh.surfaces.items():
-        assert np.array_equal(whole.cells[1].data[whole.cell_sets[name][1]], quads)
+    for number, body in enumerate(mesh.bodies):
+        assert np.array_equal(whole.cell_sets[body.name][0], np.flatnonzero(mesh.body == number))
+    for surface, quads in mesh.surfaces.items():
+        assert np.array_equal(whole.cells[1].data[whole.cell_sets[surface.name][1]], quads)
 
 
 def test_meshio_is_asked_for_by_name(mesh, monkeypatch):

@@ -1,10 +1,11 @@
 """Input decks: exact text on a mesh small enough to read, and faces that are those of C3D8."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from meshes import box
+from meshes import box, mesh_named
 
 from fabric_cad.decks.cell import write_deck
 from fabric_cad.decks.faces import element_faces, touching_faces
@@ -19,8 +20,11 @@ from fabric_cad.decks.keywords import (
     write_keywords,
 )
 from fabric_cad.decks.model import Load, Touch, model_keywords
-from fabric_cad.meshing.mesh import Mesh
 from fabric_cad.support.errors import BuildError
+from fabric_cad.weave.bodies import Surface
+from fabric_cad.weave.lattice import Lattice
+
+CONTACT, FREE = Surface.named("weft_1_contact"), Surface.named("weft_1_free")
 
 GOLDEN = Path(__file__).parent / "golden"
 
@@ -42,7 +46,7 @@ def two_yarns():
         "warp_1_start": np.array([[8, 11, 10, 9]]),
         "warp_1_end": np.array([[12, 13, 14, 15]]),
     }
-    return Mesh(np.vstack([weft, warp]), hexahedra, np.array([0, 1]), ("weft_1", "warp_1"), surfaces)
+    return mesh_named(np.vstack([weft, warp]), hexahedra, np.array([0, 1]), ("weft_1", "warp_1"), surfaces)
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
@@ -64,8 +68,8 @@ def test_every_quadrilateral_is_the_named_face_of_its_element(two_yarns):
 
 
 def test_a_surface_of_no_element_is_refused(two_yarns):
-    two_yarns.surfaces["stray"] = np.array([[0, 2, 6, 4]])
-    with pytest.raises(ValueError, match="stray"):
+    two_yarns.surfaces[Surface.named("warp_1_free")] = np.array([[0, 2, 6, 4]])
+    with pytest.raises(ValueError, match="warp_1_free"):
         element_faces(two_yarns)
 
 
@@ -83,7 +87,13 @@ def two_yarn_model(mesh, **options):
     loads = (Load("first", (0.001, 0.0, 0.0), (0.0, 0.002, 0.0)), Load("second", (0.0, 1e-9, 0.0), (1 / 3, 0.0, 0.0)))
     touch = Touch(options.get("kind", "penalty"), 1e4, 0.3, 1e3)
     return model_keywords(
-        mesh, (1.0, 1.0), law, options.get("hardening", 2000.0), touch, loads, "a model\nof two yarns"
+        mesh,
+        Lattice.axis_parallel(1.0, 1.0),
+        law,
+        options.get("hardening", 2000.0),
+        touch,
+        loads,
+        "a model\nof two yarns",
     )
 
 
@@ -112,7 +122,9 @@ def flat_yarns():
         "warp_1_start": np.array([[8, 11, 10, 9]]),
         "warp_1_end": np.array([[12, 13, 14, 15]]),
     }
-    return Mesh(np.vstack([weft, warp]), np.arange(16).reshape(2, 8), np.array([0, 1]), ("weft_1", "warp_1"), surfaces)
+    return mesh_named(
+        np.vstack([weft, warp]), np.arange(16).reshape(2, 8), np.array([0, 1]), ("weft_1", "warp_1"), surfaces
+    )
 
 
 def test_keywords_print_themselves():
@@ -151,12 +163,12 @@ def test_ends_that_do_not_match_are_refused(flat_yarns):
 
 def test_rings_widen_the_patches_on_their_own_side():
     yarn = box("weft_1", parts=(8, 6, 2))
-    mesh = Mesh(yarn.points, yarn.hexahedra, yarn.yarn, yarn.yarns, dict(yarn.surfaces))
-    bottom = yarn.surfaces["weft_1_contact"].reshape(8, 6, 4)
-    mesh.surfaces["weft_1_contact"] = bottom[3:5, 2:4].reshape(-1, 4)
+    mesh = replace(yarn, surfaces=dict(yarn.surfaces))
+    bottom = yarn.surfaces[CONTACT].reshape(8, 6, 4)
+    mesh.surfaces[CONTACT] = bottom[3:5, 2:4].reshape(-1, 4)
     outside = np.ones((8, 6), dtype=bool)
     outside[3:5, 2:4] = False
-    mesh.surfaces["weft_1_free"] = np.vstack([yarn.surfaces["weft_1_free"], bottom[outside]])
+    mesh.surfaces[FREE] = np.vstack([yarn.surfaces[FREE], bottom[outside]])
     for rings, faces in ((0, 2 * 2), (1, 4 * 4), (2, 6 * 6), (9, 8 * 6)):
         found = touching_faces(mesh, rings)
         assert len(found["weft_bottom"][0]) == faces

@@ -14,6 +14,10 @@ from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.simulation.isoparametric import distance_to_quads, inside_hexahedra
 from fabric_cad.simulation.penetration import kind_of, penetration
 from fabric_cad.support.series import valid_until
+from fabric_cad.weave.bodies import Body
+from fabric_cad.weave.directions import Direction
+
+WEFT, SECOND, WARP = map(Body.named, ("weft_1", "weft_2", "warp_1"))
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -32,8 +36,8 @@ def test_boxes_overlap_by_what_they_were_pushed(seed):
     points = Rotation.random(random_state=rng).apply(mesh.points) + rng.uniform(-5, 5, 3)
     found = penetration(mesh, points)
     assert found.depth == pytest.approx(depth, rel=1e-6)
-    assert {found.first, found.second} == {"weft_1", "warp_1"}
-    assert found.by_pair == {("weft_1", "warp_1"): found.depth}
+    assert {found.first, found.second} == {WEFT, WARP}
+    assert found.by_pair == {(WEFT, WARP): found.depth}
     assert (found.deepest("crossing"), found.deepest("parallel")) == (found.depth, 0.0)
     assert np.linalg.norm(points - found.place, axis=1).min() < 0.5
 
@@ -48,7 +52,7 @@ def test_boxes_that_touch_or_part_do_not_overlap(seed):
         found = penetration(mesh, turned.apply(mesh.points))
         assert found.depth < 1e-14
         if gap:
-            assert (found.depth, found.first, found.second) == (0.0, "", "") and np.isnan(found.place).all()
+            assert (found.depth, found.first, found.second) == (0.0, None, None) and np.isnan(found.place).all()
 
 
 @pytest.mark.parametrize("shear", [0.0, 0.2])
@@ -58,7 +62,7 @@ def test_neighbours_meet_across_the_border_of_the_cell(shear):
     assert penetration(mesh, mesh.points).depth == 0
     found = penetration(mesh, mesh.points, period)
     assert found.depth == pytest.approx(0.1)
-    assert found.by_pair == {("weft_1", "weft_1"): 0, ("weft_1", "weft_2"): found.depth, ("weft_2", "weft_2"): 0}
+    assert found.by_pair == {(WEFT, WEFT): 0, (WEFT, SECOND): found.depth, (SECOND, SECOND): 0}
     assert found.deepest("parallel") == found.depth and found.deepest("crossing") == 0
 
 
@@ -67,7 +71,7 @@ def test_a_lone_yarn_meets_its_own_image_beside_it_but_not_its_continuation():
     period = np.array([[LENGTH, 0.0, 0.0], [0.0, WIDTH - 0.05, 0.0]])
     found = penetration(mesh, mesh.points, period)
     assert found.depth == pytest.approx(0.05)
-    assert (found.first, found.second) == ("weft_1", "weft_1")
+    assert (found.first, found.second) == (WEFT, WEFT)
     assert penetration(mesh, mesh.points, period * [[1], [2]]).depth == 0
 
 
@@ -140,8 +144,8 @@ def test_state_up_to_which_contact_is_valid():
 
 
 def test_kinds_of_pairs():
-    assert kind_of(("weft_1", "warp_1")) == "crossing"
-    assert kind_of(("weft_1", "weft_12")) == kind_of(("warp_1", "warp_1")) == "parallel"
+    assert kind_of((WEFT, WARP)) == "crossing"
+    assert kind_of((WEFT, SECOND)) == kind_of((WARP, WARP)) == "parallel"
 
 
 @pytest.fixture(scope="module", params=["plain", "plain_flat", "plain_round", "twill22_chords"])
@@ -164,9 +168,9 @@ def test_yarns_of_a_cell_touch_and_do_not_penetrate(cell):
 
 def test_wefts_moved_down_lie_in_the_warps_below_them(cell):
     mesh, period = cell
-    wefts = [n for n, name in enumerate(mesh.yarns) if name.startswith("weft")]
+    wefts = [n for n, yarn in enumerate(mesh.bodies) if yarn.direction is Direction.WEFT]
     points = mesh.points.copy()
-    points[np.unique(mesh.hexahedra[np.isin(mesh.yarn, wefts)]), 2] -= 0.01
+    points[np.unique(mesh.hexahedra[np.isin(mesh.body, wefts)]), 2] -= 0.01
     found = penetration(mesh, points, period)
     assert found.depth == pytest.approx(0.01, rel=0.01)
     assert found.deepest("crossing") == found.depth and found.deepest("parallel") < 1e-12
@@ -175,7 +179,7 @@ def test_wefts_moved_down_lie_in_the_warps_below_them(cell):
 def test_numbering_of_yarns_does_not_matter(cell):
     mesh, period = cell
     points = mesh.points + np.random.default_rng(1).normal(scale=0.003, size=mesh.points.shape)
-    back = replace(mesh, yarn=len(mesh.yarns) - 1 - mesh.yarn, yarns=mesh.yarns[::-1])
+    back = replace(mesh, body=len(mesh.bodies) - 1 - mesh.body, bodies=mesh.bodies[::-1])
     one, other = penetration(mesh, points, period), penetration(back, points, period)
     assert one.depth == other.depth > 0 and {one.first, one.second} == {other.first, other.second}
     assert {frozenset(pair): depth for pair, depth in one.by_pair.items()} == {

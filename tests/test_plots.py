@@ -12,6 +12,7 @@ from fabric_cad.pictures.plots import (
     plot_tension_surface,
     save_figure,
 )
+from fabric_cad.weave.bodies import Body
 
 RATIOS = (0.0, 0.5, 1.0, 2.0, np.inf)
 
@@ -92,7 +93,7 @@ def test_shear_shows_the_angle_at_which_contact_ceases_to_be_valid():
 
 def test_cuts_show_displacements_larger_over_the_cell_at_rest():
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
-    cuts = {name: [Outline(name, square, square * [1.0, 0.9])] for name in ("weft_1", "warp_1")}
+    cuts = {name: [Outline(Body.named(name), square, square * [1.0, 0.9])] for name in ("weft_1", "warp_1")}
     first, second = plot_crushing(cuts, 5.0).axes
     assert (first.get_xlabel(), second.get_xlabel()) == ("x mm", "y mm")
     assert "\u00d7 5" in first.get_title("right") and first.get_title("left") == "along weft 1"

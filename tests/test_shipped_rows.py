@@ -4,7 +4,7 @@ import pytest
 
 from fabric_cad import identify, read_family
 from fabric_cad.measured.shipped import shipped_families
-from fabric_cad.weave.weaves import DIRECTIONS
+from fabric_cad.weave.directions import DIRECTIONS
 
 # printed in Cao et al. 2008, Table 1: areal mass g/m2, fabric thickness mm, standard deviations of the widths mm
 TWINTEX = [

@@ -27,6 +27,8 @@ from fabric_cad.simulation.shear import cell_vectors, moment, shear_loads
 from fabric_cad.simulation.solver import find_solver
 from fabric_cad.simulation.tension import curves, paths, tension_loads
 from fabric_cad.study.units import Work, run_unit
+from fabric_cad.weave.bodies import SurfaceKind
+from fabric_cad.weave.lattice import Lattice
 
 pytestmark = needs_ccx
 FAMILIES = shipped_families()
@@ -61,7 +63,7 @@ def meshed(folder, **options):
 def run(folder, mesh, loads, settings=None, name="job", at_once=False):
     """A job whose loads are all reached, without a warning of the solver's."""
     deck = folder / f"{name}.inp"
-    write_model(deck, mesh, PERIOD, settings or read_settings(FAMILIES, "plain42"), loads, name)
+    write_model(deck, mesh, Lattice.axis_parallel(*PERIOD), settings or read_settings(FAMILIES, "plain42"), loads, name)
     asked = "*CONTACT PRINT, TOTALS=ONLY, FREQUENCY=9999\nCELS\n*END STEP" * ("CONTACT PAIR" in deck.read_text())
     deck.write_text(deck.read_text().replace("*END STEP", asked or "*END STEP"))
     if at_once:
@@ -190,10 +192,16 @@ def alone(folder, law, strain, **options):
     loads = (Load("pull", (strain * BOX_LENGTH, 0.0, 0.0), (0.0, 0.0, 0.0)),)
     keywords = list(
         model_keywords(
-            yarn, (BOX_LENGTH, 1.0), law, options.get("hardening", 0.0), Touch("penalty", 1.0), loads, "yarn"
+            yarn,
+            Lattice.axis_parallel(BOX_LENGTH, 1.0),
+            law,
+            options.get("hardening", 0.0),
+            Touch("penalty", 1.0),
+            loads,
+            "yarn",
         )
     )
-    start = yarn.nodes_of("weft_1_start")
+    start = yarn.nodes_of(yarn.yarns[0], SurfaceKind.START)
     first, last = (int(start[yarn.points[start] @ [0, 1, at] == limit][0]) + 1 for at, limit in corner(yarn, start))
     # no warp is there to hold the yarn across, or to keep it from turning about itself
     keywords.insert(-1, Boundary(((first, 2, 0.0), (last, 2, 0.0))))

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from fabric_cad.pictures.scene import scale_bar
 from fabric_cad.pictures.skin import skin_of
 from fabric_cad.simulation.settings import YarnLaw
 from fabric_cad.simulation.stress import yarn_stress
+from fabric_cad.weave.bodies import Body, Surface, SurfaceKind
 
 
 @pytest.fixture(scope="module")
@@ -84,11 +86,11 @@ def test_a_series_holds_every_state_at_its_deformed_points(mesh, displacement, t
         assert grid.point_data.active_vectors_name == "displacement"
         assert (grid.point_data["pressure_MPa"] == state.point_data["pressure_MPa"]).all()
         assert set(grid.cell_data) == {"yarn", "direction", "fibre_axis", "strain"}
-        assert (grid.cell_data["yarn"] == mesh.yarn + 1).all()
-        assert (grid.cell_data["direction"] == (mesh.yarn == 2)).all()
+        assert (grid.cell_data["yarn"] == mesh.body + 1).all()
+        assert (grid.cell_data["direction"] == (mesh.body == 2)).all()
         facts = {name: grid.field_data[name][0] for name in ("state", "row", "E11", "TimeValue")}
         assert facts == {"state": f"state {number}", "row": "three", "E11": 0.001 * number, "TimeValue": time}
-        assert list(grid.field_data["yarn_names"]) == list(mesh.yarns)
+        assert list(grid.field_data["yarn_names"]) == [yarn.name for yarn in mesh.yarns]
         assert list(grid.field_data["units"]) == ["displacement: mm", "pressure_MPa: MPa"]
 
 
@@ -98,7 +100,7 @@ def test_a_series_takes_only_what_fits_the_mesh(mesh, displacement, tmp_path):
         ({"displacement": displacement[:, 0]}, r"displacement has shape \(567,\), not \(567, 3\)"),
         ({"point_data": {"force": np.zeros((2, 3))}}, r"point data force has shape \(2, 3\), not \(567, 3\)"),
         ({"cell_data": {"strain": np.zeros(567)}}, r"cell data strain has shape \(567,\), not \(288,\)"),
-        ({"cell_data": {"yarn": mesh.yarn}}, "cell data yarn is written anyway"),
+        ({"cell_data": {"yarn": mesh.body}}, "cell data yarn is written anyway"),
     ):
         state = State(**{"time": 0.0, "label": "", "displacement": displacement} | wrong)
         with pytest.raises(ValueError, match=message):
@@ -151,8 +153,8 @@ def test_a_cut_follows_its_material_points(mesh):
     """Pulled along the wefts and pressed: every outline is the rectangle at rest, and that rectangle deformed."""
     gradient = np.diag([0.02, 0.0, -0.1])
     outlines = cut_along(mesh, mesh.points @ gradient, "weft_2")
-    assert sorted(outline.yarn for outline in outlines) == ["warp_1", "weft_2"]
-    for outline, width, level in zip(sorted(outlines, key=lambda each: each.yarn), (WIDTH, LENGTH), (HEIGHT, 0.0)):
+    assert sorted(outline.yarn.name for outline in outlines) == ["warp_1", "weft_2"]
+    for outline, width, level in zip(sorted(outlines, key=lambda each: each.yarn.name), (WIDTH, LENGTH), (HEIGHT, 0.0)):
         low, high = outline.rest.min(axis=0), outline.rest.max(axis=0)
         assert [*low, *high] == pytest.approx([-width / 2, level - HEIGHT / 2, width / 2, level + HEIGHT / 2])
         assert outline.deformed == pytest.approx(outline.rest * [1.02, 0.9])
@@ -163,12 +165,12 @@ def test_a_cut_follows_its_material_points(mesh):
 
 def test_only_rims_and_creases_along_a_yarn_are_lines(mesh):
     """A box has four creases of 8 edges and two rims of 16, and six smooth sides; a steep fold across adds none."""
-    skin = skin_of(mesh, ["weft_1"])
+    skin = skin_of(mesh, [Body.named("weft_1")])
     assert len(skin.lines) == 4 * 8 + 2 * 16 and skin.patch.max() + 1 == 6
     points = mesh.points.copy()
     ridge = np.isclose(points[:, 0], 0)
     points[ridge, 2] += 2.0
-    folded = skin_of(type(mesh)(points, mesh.hexahedra, mesh.yarn, mesh.yarns, mesh.surfaces), ["weft_1"])
+    folded = skin_of(replace(mesh, points=points), [Body.named("weft_1")])
     assert {tuple(line) for line in folded.lines} == {tuple(line) for line in skin.lines}
 
 
@@ -187,13 +189,13 @@ def twill(tmp_path_factory):
 def test_the_edges_drawn_of_a_twill_run_along_its_yarns_or_around_their_ends(twill):
     lines = skin_of(twill, twill.yarns).lines
     ends = np.zeros(len(twill.points), dtype=bool)
-    for name, quads in twill.surfaces.items():
-        ends[quads] |= name.endswith(("_start", "_end"))
+    for surface, quads in twill.surfaces.items():
+        ends[quads] |= surface.kind in (SurfaceKind.START, SurfaceKind.END)
     inner = lines[~ends[lines].all(axis=1)]
     along = {tuple(sorted(pair)) for corner in range(4) for pair in twill.hexahedra[:, [corner, corner + 4]].tolist()}
     assert {tuple(sorted(line)) for line in inner.tolist()} <= along
     # and each yarn's two edges are drawn from end to end
-    layers = len(twill.hexahedra) // len(twill.yarns) // len(twill.surfaces["weft_1_start"])
+    layers = len(twill.hexahedra) // len(twill.yarns) // len(twill.surfaces[Surface.named("weft_1_start")])
     assert len(inner) == len(twill.yarns) * 2 * layers
 
 
@@ -253,7 +255,10 @@ def test_hidden_yarns_are_not_drawn(mesh, displacement, tmp_path):
     assert min(share(picture(path), orange), share(picture(path), blue)) > 0.05
     draw_deformed(mesh, displacement, path, hide=("warp_1",))
     assert share(picture(path), orange) > 0.05 and share(picture(path), blue) == 0
-    for hide, message in ((("warp_2",), "no yarn is called warp_2"), (mesh.yarns, "no yarn is left")):
+    for hide, message in (
+        (("warp_2",), "no yarn is called warp_2"),
+        ([yarn.name for yarn in mesh.yarns], "no yarn is left"),
+    ):
         with pytest.raises(ValueError, match=message):
             draw_deformed(mesh, displacement, path, hide=hide)
 

@@ -13,6 +13,7 @@ from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TColStd import TColStd_Array1OfReal
 
 from ..section.sections import Section
+from ..weave.directions import Direction
 from ..yarn.trajectory import Trajectory
 from .solids import knots_and_times
 
@@ -22,7 +23,7 @@ def planes_of(path: Trajectory) -> list[cq.Plane]:
     heights = [piece.poles[0] for piece in path.pieces] + [path.pieces[-1].poles[-1]]
     places = [plane.place for plane in path.planes]
 
-    if path.direction == "weft":
+    if path.direction is Direction.WEFT:
         return [
             cq.Plane((place, path.axis, height), xDir=(0, 1, 0), normal=(1, 0, 0))
             for place, height in zip(places, heights)
@@ -58,7 +59,7 @@ def edge_of(path: Trajectory) -> cq.Edge:
         knots += [*inner, piece.knots[-1], piece.knots[-1]]
     knots.append(knots[-1])
 
-    weft = path.direction == "weft"
+    weft = path.direction is Direction.WEFT
     points = [(t, path.axis, z) if weft else (path.axis, t, z) for t, z in poles]
     return _spline_edge(points, [1.0] * len(points), np.array(knots), 2)
 

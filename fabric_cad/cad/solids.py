@@ -12,25 +12,27 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_A
 
 from ..section.sections import Section
 from ..support.errors import BuildError
+from ..weave.directions import Direction
+from ..weave.lattice import AS_WOVEN, Lattice
 from ..yarn.skin import Patch, Skin, skin
 from ..yarn.trajectory import Trajectory
 
 _SEWING_TOLERANCE = 1e-7  # mm, OCCT's confusion; the edges sewn agree to rounding
 
 
-def sweep(path: Trajectory, sections: tuple[Section, ...]) -> cq.Solid:
-    """One valid solid: the control sections swept along a trajectory, exactly.
+def sweep(path: Trajectory, sections: tuple[Section, ...], lattice: Lattice = AS_WOVEN) -> cq.Solid:
+    """One valid solid: the control sections swept along a trajectory, exactly, where ``lattice`` puts them.
 
     Raises :class:`BuildError` where OCCT does not close it to a valid solid.
     """
-    return solid_of(skin(path, sections))
+    return solid_of(skin(path, sections), lattice)
 
 
-def solid_of(surface: Skin) -> cq.Solid:
+def solid_of(surface: Skin, lattice: Lattice = AS_WOVEN) -> cq.Solid:
     """The solid bounded by a skin and its two end sections."""
-    faces = [_face(patch, surface) for patch in surface.patches]
+    faces = [_face(patch, surface, lattice) for patch in surface.patches]
     open_shell, rim = _sew(faces)
-    along = "x" if surface.direction == "weft" else "y"
+    along = lattice.woven_coordinate(surface.direction.axis)
     ends = [_cap(rim, along, place) for place in (surface.planes[0].place, surface.planes[-1].place)]
     shell, _ = _sew([*open_shell.Faces(), *ends])
     solid = cq.Solid.makeSolid(shell) if isinstance(shell, cq.Shell) else None
@@ -39,15 +41,16 @@ def solid_of(surface: Skin) -> cq.Solid:
     return solid
 
 
-def _face(patch: Patch, surface: Skin) -> cq.Face:
+def _face(patch: Patch, surface: Skin, lattice: Lattice) -> cq.Face:
     rows, columns, _ = patch.poles.shape
     poles, weights = TColgp_Array2OfPnt(1, rows, 1, columns), TColStd_Array2OfReal(1, rows, 1, columns)
-    weft = surface.direction == "weft"
-    for i, row in enumerate(patch.poles.tolist(), start=1):
-        for j, (t, v, z, weight) in enumerate(row, start=1):
-            across = v + surface.axis
-            poles.SetValue(i, j, gp_Pnt(t, across, z) if weft else gp_Pnt(across, t, z))
-            weights.SetValue(i, j, weight)
+    t, v, z, weight = np.moveaxis(patch.poles, 2, 0)
+    plan = (t, v + surface.axis) if surface.direction is Direction.WEFT else (v + surface.axis, t)
+    places = lattice.to_space(np.stack([*plan, z], axis=2))
+    for i, (row, shares) in enumerate(zip(places.tolist(), weight.tolist()), start=1):
+        for j, (place, share) in enumerate(zip(row, shares), start=1):
+            poles.SetValue(i, j, gp_Pnt(*place))
+            weights.SetValue(i, j, share)
     (u_knots, u_times), (v_knots, v_times) = knots_and_times(patch.along[0]), knots_and_times(patch.across[0])
     knots = u_knots, v_knots, u_times, v_times, patch.along[1], patch.across[1]
     rational = (patch.poles[..., 3] != 1.0).any()
@@ -77,11 +80,16 @@ def _sew(faces: list[cq.Face]) -> tuple[cq.Shape, list[cq.Edge]]:
     return sewn, [edge for edge in sewn.Edges() if edge in free]
 
 
-def _cap(rim: list[cq.Edge], along: str, place: float) -> cq.Face:
-    """The planar end section, from those of the edges the skin ends in that lie there."""
+def _cap(rim: list[cq.Edge], along: np.ndarray, place: float) -> cq.Face:
+    """The planar end section, from those of the edges the skin ends in that lie there.
+
+    ``along`` (3,) times a point of space is the woven coordinate along the yarn, mm.
+    """
     edges = [
         edge
         for edge in rim
-        if all(abs(getattr(point, along) - place) < _SEWING_TOLERANCE for point in (edge.startPoint(), edge.endPoint()))
+        if all(
+            abs(along @ point.toTuple() - place) < _SEWING_TOLERANCE for point in (edge.startPoint(), edge.endPoint())
+        )
     ]
     return cq.Face.makeFromWires(cq.Wire.assembleEdges(edges))

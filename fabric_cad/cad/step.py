@@ -25,8 +25,8 @@ from OCP.XSControl import XSControl_WorkSession
 
 from .. import __version__
 from ..support.errors import BuildError
-from ..weave.colours import COLOURS
-from ..weave.weaves import direction_of
+from ..weave.bodies import Body
+from ..weave.colours import colour_of
 
 _NO_TIME = "1970-01-01T00:00:00"
 """The header's time: none, for the same cell makes the same file. ``report.json`` has the date."""
@@ -115,7 +115,7 @@ def assemble(yarns: dict[str, cq.Solid], name: str = "") -> Cell:
     """The cell of named yarns (``weft_1``, ..., ``warp_1``, ...) of the fabric ``name``."""
     assembly = cq.Assembly(name="cell")
     for yarn, solid in yarns.items():
-        assembly.add(solid, name=yarn, color=cq.Color(*COLOURS[direction_of(yarn)]))
+        assembly.add(solid, name=yarn, color=cq.Color(*colour_of(Body.named(yarn))))
     return Cell(assembly, name)
 
 

@@ -12,6 +12,9 @@ from ..meshing.mesh import Mesh
 from ..model.plausibility import LEAST_JACOBIAN
 from ..model.solved import Direction, SolvedFabric, point_columns
 from ..support.errors import BuildError
+from ..weave.bodies import Body, SurfaceKind
+from ..weave.directions import DIRECTIONS
+from ..weave.lattice import Lattice
 from ..weave.weaves import Weave
 
 COINCIDENT = 1e-9
@@ -31,10 +34,8 @@ def contact_pairing(mesh: Mesh) -> Pairing:
     from scipy.spatial import cKDTree
 
     weft, warp = (
-        np.concatenate(
-            [np.unique(q) for name, q in mesh.surfaces_named("contact").items() if name.startswith(direction)]
-        )
-        for direction in ("weft", "warp")
+        np.concatenate([mesh.nodes_of(yarn, SurfaceKind.CONTACT) for yarn in mesh.yarns if yarn.direction is direction])
+        for direction in DIRECTIONS
     )
     paired = 0
     for nodes, others in ((weft, warp), (warp, weft)):
@@ -43,14 +44,14 @@ def contact_pairing(mesh: Mesh) -> Pairing:
     return Pairing(len(weft) + len(warp), paired)
 
 
-def end_pairing(mesh: Mesh, period: tuple[float, float]) -> Pairing:
+def end_pairing(mesh: Mesh, lattice: Lattice) -> Pairing:
     """Nodes on the yarns' start sections, and those that match one on the end, a period further."""
     from scipy.spatial import cKDTree
 
     count = paired = 0
-    for name in mesh.surfaces_named("start"):
-        shift = np.array([period[0], 0.0, 0.0]) if name.startswith("weft") else np.array([0.0, period[1], 0.0])
-        start, end = (mesh.points[mesh.nodes_of(name.replace("_start", ending))] for ending in ("_start", "_end"))
+    for yarn in mesh.yarns:
+        start, end = (mesh.points[mesh.nodes_of(yarn, kind)] for kind in (SurfaceKind.START, SurfaceKind.END))
+        shift = lattice.vectors[yarn.direction.axis]
         partners = cKDTree(end).query_ball_point(start + shift, COINCIDENT, return_length=True)
         count += len(start)
         paired += int(np.count_nonzero(partners == 1)) if len(start) == len(end) else 0
@@ -75,7 +76,7 @@ def cell_report(
     ``weft_linear_density_tex``, ``warp_linear_density_tex`` and ``fibre_density_g_cm3``,
     ``std`` the standard deviations of the columns of ``row`` where its measurements have any.
     """
-    identified = {name: _identified(name, fabric.directions[name]) for name in ("weft", "warp")}
+    identified = {name: _identified(name, fabric.directions[name]) for name in DIRECTIONS}
     identified["fabric_thickness_mm"] = fabric.fabric_thickness
     if std is not None:
         scattered = SolvedFabric.from_row({**row, **std})  # a fabric whose numbers are standard deviations
@@ -132,7 +133,7 @@ YARN_DATA = ("weft_linear_density_tex", "warp_linear_density_tex", "fibre_densit
 
 def _mesh(fabric: SolvedFabric, meshed) -> dict:
     mesh, quality = meshed.mesh, meshed.quality
-    contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.period)
+    contact, ends = contact_pairing(mesh), end_pairing(mesh, fabric.lattice)
     return {
         "nodes": len(mesh.points),
         "hexahedra": len(mesh.hexahedra),
@@ -187,7 +188,7 @@ def _volumes(fabric: SolvedFabric, consistency, yarn_data: Mapping[str, float | 
         if tex[name] and fibre:
             section = tex[name] / fibre * 1e-3  # mm2 of solid fibre
             length = count * extent * (1 + fabric.directions[name].crimp)
-            yarns = sum(v for yarn, v in consistency.yarn_volumes.items() if yarn.startswith(name))
+            yarns = sum(v for yarn, v in consistency.yarn_volumes.items() if Body.named(yarn).direction == name)
             volumes[f"{name}_fibre_fraction"] = section * length / yarns
     return volumes
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..meshing.mesh import Mesh
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 from .faces import element_faces, touching_faces
 from .keywords import (
     Comment,
@@ -35,17 +35,28 @@ def cell_keywords(mesh: Mesh, rings: int = 0) -> Iterator[Keyword]:
     direction across, in plane, as 2.
     """
     yield Nodes("all_nodes", mesh.points)
-    for number, name in enumerate(mesh.yarns):
-        elements = np.flatnonzero(mesh.yarn == number)
-        yield Hexahedra(name, elements + 1, mesh.hexahedra[elements] + 1)
+    for body in mesh.bodies:
+        elements = mesh.elements_of(body)
+        yield Hexahedra(body.name, elements + 1, mesh.hexahedra[elements] + 1)
     for direction in DIRECTIONS:
-        yield ElementSet(direction, tuple(name for name in mesh.yarns if name.startswith(direction)))
-    for name in mesh.surfaces:
-        yield NodeSet(name, mesh.nodes_of(name) + 1)
-    for name, (elements, sides) in (element_faces(mesh) | touching_faces(mesh, rings)).items():
+        yield ElementSet(direction, tuple(yarn.name for yarn in mesh.yarns if yarn.direction is direction))
+    for surface, quads in mesh.surfaces.items():
+        yield NodeSet(surface.name, np.unique(quads) + 1)
+
+    for surface, (elements, sides) in element_faces(mesh).items():
+        if len(elements):
+            yield Surface(surface.name, elements + 1, sides + 1)
+    for name, (elements, sides) in touching_faces(mesh, rings).items():
         if len(elements):
             yield Surface(name, elements + 1, sides + 1)
-    yield FibreOrientation(ORIENTATION, np.hstack([mesh.fibre_axes(), mesh.across_axes()]))
+    yield FibreOrientation(ORIENTATION, _axes(mesh))
+
+
+def _axes(mesh: Mesh) -> np.ndarray:
+    """Axes 1 and 2 of every element, (elements, 6): along and across the yarn, x and y off the yarns."""
+    axes = np.hstack([mesh.fibre_axes(), mesh.across_axes()])
+    axes[~axes.any(axis=1)] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+    return axes
 
 
 def write_deck(mesh: Mesh, path: str | Path, title: str, dialect: str = "calculix") -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..meshing.mesh import Mesh
-from ..weave.weaves import DIRECTIONS, direction_of
+from ..weave.bodies import Surface, SurfaceKind
+from ..weave.directions import DIRECTIONS
 
 # corners of the faces S1 ... S6 of C3D8
 FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])
@@ -13,7 +14,7 @@ FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6,
 _UPRIGHT = 0.1  # sine up to which a face is one of the yarn's sides, neither top nor bottom
 
 
-def element_faces(mesh: Mesh) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def element_faces(mesh: Mesh) -> dict[Surface, tuple[np.ndarray, np.ndarray]]:
     """For every surface, the elements (quads,) it bounds and which of their faces (0: S1 ... 5: S6).
 
     Raises ValueError where a quadrilateral is the face of no element.
@@ -25,13 +26,13 @@ def element_faces(mesh: Mesh) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     keys = _face_keys(mesh.hexahedra[elements[:, None], FACES[sides]], len(mesh.points))
     order = np.argsort(keys)
     found = {}
-    for name, quads in mesh.surfaces.items():
+    for surface, quads in mesh.surfaces.items():
         wanted = _face_keys(quads, len(mesh.points))
         at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
         if not np.array_equal(keys[at], wanted):
-            raise ValueError(f"surface {name} has a quadrilateral that bounds no element")
+            raise ValueError(f"surface {surface} has a quadrilateral that bounds no element")
         by_element = np.argsort(elements[at], kind="stable")
-        found[name] = elements[at][by_element], sides[at][by_element]
+        found[surface] = elements[at][by_element], sides[at][by_element]
     return found
 
 
@@ -56,14 +57,13 @@ def touching_faces(mesh: Mesh, rings: int = 0) -> dict[str, tuple[np.ndarray, np
     faces = element_faces(mesh)
     found: dict[str, list] = {f"{direction}_{side}": [] for direction in DIRECTIONS for side in ("top", "bottom")}
     for yarn in mesh.yarns:
-        direction = direction_of(yarn)
-        touching, free = faces[f"{yarn}_contact"], faces.get(f"{yarn}_free")
+        touching, free = faces[Surface(yarn, SurfaceKind.CONTACT)], faces.get(Surface(yarn, SurfaceKind.FREE))
         _, upward = _quads(mesh, touching)
         for side, chosen in (("top", upward > 0), ("bottom", upward <= 0)):
             taken = touching[0][chosen], touching[1][chosen]
             if rings and free is not None:
                 taken = _widened(mesh, taken, free, side == "top", rings)
-            found[f"{direction}_{side}"].append(taken)
+            found[f"{yarn.direction}_{side}"].append(taken)
     none = np.empty(0, dtype=np.int64)
     return {name: tuple(map(np.concatenate, zip((none, none), *parts))) for name, parts in found.items()}
 

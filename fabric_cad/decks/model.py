@@ -15,7 +15,9 @@ import numpy as np
 
 from ..meshing.mesh import Mesh
 from ..support.errors import BuildError
-from ..weave.weaves import DIRECTIONS, direction_of
+from ..weave.bodies import Body, Surface, SurfaceKind
+from ..weave.directions import DIRECTIONS, Direction
+from ..weave.lattice import Lattice
 from .cell import ORIENTATION, cell_keywords
 from .faces import touching_faces
 from .keywords import (
@@ -63,14 +65,14 @@ class Touch:
 
 def model_keywords(
     mesh: Mesh,
-    period: tuple[float, float],
+    lattice: Lattice,
     law: EngineeringConstants,
     hardening: float,
     touch: Touch,
     loads: Iterable[Load],
     title: str,
 ) -> Iterator[Keyword]:
-    """A whole model: the cell of ``mesh``, ``period`` (mm) long and wide, through ``loads`` one after another.
+    """A whole model: the cell of ``mesh``, which repeats as ``lattice`` says, through ``loads`` one after another.
 
     ``hardening`` (MPa) of the yarns' compaction, 0 for none, works in a second set of elements on
     the same nodes: it adds to the law's stress. Raises :class:`BuildError` where a yarn's two ends
@@ -82,10 +84,11 @@ def model_keywords(
     pairs = _touching_pairs(mesh)
     yield from _contact(pairs, touch)
     reference = {name: len(mesh.points) + 1 + at for at, name in enumerate(DIRECTIONS)}
-    yield Nodes("cell_vectors", np.diag([*period, 0.0])[:2], first=reference["weft"])
-    yield from periodic_equations(mesh, period, reference)
+    yield Nodes("cell_vectors", lattice.vectors, first=reference[Direction.WEFT])
+    yield from periodic_equations(mesh, lattice, reference)
     for name in DIRECTIONS:
-        yield NodeSet(f"{name}_ends", tuple(f"{yarn}_end" for yarn in mesh.yarns if yarn.startswith(name)))
+        ends = (Surface(yarn, SurfaceKind.END) for yarn in mesh.yarns if yarn.direction is name)
+        yield NodeSet(f"{name}_ends", tuple(end.name for end in ends))
     yield Boundary(fixings(mesh))
     output = Output(tuple(f"{name}_ends" for name in DIRECTIONS), contact=bool(pairs) and touch.kind == "penalty")
     for load in loads:
@@ -119,30 +122,28 @@ def _contact(pairs: list[tuple[str, str]], touch: Touch) -> Iterator[Keyword]:
         yield from (ContactPair("yarn_on_yarn", slave, master) for slave, master in pairs)
 
 
-def periodic_equations(mesh: Mesh, period: tuple[float, float], reference: dict[str, int]) -> Iterator[Equation]:
+def periodic_equations(mesh: Mesh, lattice: Lattice, reference: dict[Direction, int]) -> Iterator[Equation]:
     """Three equations a pair of end nodes: displacement of the end = of the start + of the reference node."""
     from scipy.spatial import cKDTree
 
     for yarn in mesh.yarns:
-        direction = direction_of(yarn)
-        shift = np.zeros(3)
-        axis = DIRECTIONS.index(direction)
-        shift[axis] = period[axis]
-        starts, ends = mesh.nodes_of(f"{yarn}_start"), mesh.nodes_of(f"{yarn}_end")
+        shift = lattice.vectors[yarn.direction.axis]
+        starts, ends = mesh.nodes_of(yarn, SurfaceKind.START), mesh.nodes_of(yarn, SurfaceKind.END)
         distance, partner = cKDTree(mesh.points[ends]).query(mesh.points[starts] + shift)
         if len(starts) != len(ends) or distance.max() > _PLACE or len(np.unique(partner)) != len(ends):
             raise BuildError(f"{yarn}: the nodes of its two ends do not match")
         for start, end in zip((starts + 1).tolist(), (ends[partner] + 1).tolist()):
             for axis in (1, 2, 3):
-                yield Equation(((end, axis, 1.0), (start, axis, -1.0), (reference[direction], axis, -1.0)))
+                yield Equation(((end, axis, 1.0), (start, axis, -1.0), (reference[yarn.direction], axis, -1.0)))
 
 
 def fixings(mesh: Mesh) -> tuple[tuple[int, int, float], ...]:
     """Displacements that hold the whole cell: the middle of weft 1's start in x and z, of warp 1's in y."""
     held = []
-    for yarn, axes in (("weft_1", (1, 3)), ("warp_1", (2,))):
-        if f"{yarn}_start" in mesh.surfaces:
-            nodes = mesh.nodes_of(f"{yarn}_start")
+    for direction, axes in ((Direction.WEFT, (1, 3)), (Direction.WARP, (2,))):
+        yarn = Body.yarn(direction, 0)
+        if Surface(yarn, SurfaceKind.START) in mesh.surfaces:
+            nodes = mesh.nodes_of(yarn, SurfaceKind.START)
             places = mesh.points[nodes]
             middle = nodes[((places - places.mean(axis=0)) ** 2).sum(axis=1).argmin()]
             held += [(int(middle) + 1, axis, 0.0) for axis in axes]

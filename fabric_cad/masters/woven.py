@@ -22,8 +22,9 @@ from fabric_cad.cad.step import Cell, assemble
 from fabric_cad.model.solved import SolvedFabric, read_solved
 from fabric_cad.section.sections import Section
 from fabric_cad.support.errors import ArgumentError, InputError, Problem
-from fabric_cad.weave.colours import COLOURS
-from fabric_cad.weave.weaves import direction_of, yarns_of
+from fabric_cad.weave.bodies import Body
+from fabric_cad.weave.colours import colour_of as colour_of_body
+from fabric_cad.weave.weaves import yarns_of
 from fabric_cad.yarn.swept import SweptYarn
 
 SWEEPS = ("exact", "multisection")
@@ -89,9 +90,10 @@ def woven(
         return assemble(solids, fabric.name)
 
     solids = {}
+    lattice = fabric.lattice
     for yarn in yarns_of(np.asarray(weft_over_warp)):
         swept = SweptYarn(fabric, yarn)
-        solids[yarn.name] = sweep(swept.trajectory, _sections(swept, section))
+        solids[yarn.name] = sweep(swept.trajectory, _sections(swept, section), lattice)
     return assemble(solids, fabric.name)
 
 
@@ -110,7 +112,7 @@ def solved_row(path: str) -> SolvedFabric:
 
 def colour_of(name: str) -> tuple[int, ...]:
     """Red, green and blue of a yarn, 0 to 255."""
-    return tuple(int(255 * share) for share in COLOURS[direction_of(name)][:3])
+    return tuple(int(255 * share) for share in colour_of_body(Body.named(name)))
 
 
 def _sections(swept: SweptYarn, section: Sections) -> tuple[Section, ...]:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..support.errors import Problem
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 from .columns import MEASURED, NUMBERS
 from .family import Family
 from .row_values import RowValues

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..support.errors import quoted
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 from .drafts import MOST_THREADS, Draft
 
 _UNITS = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..support.errors import MissingPackageError
-from .mesh import Mesh
+from .mesh import Mesh, yarn_numbers
 
 
 def meshio_mesh(mesh: Mesh):
@@ -17,17 +17,20 @@ def meshio_mesh(mesh: Mesh):
 
     sizes = [len(quads) for quads in mesh.surfaces.values()]
     starts = np.cumsum([0, *sizes])
-    owners = [mesh.yarns.index(surface.rsplit("_", 1)[0]) for surface in mesh.surfaces]
+    owners = [mesh.bodies.index(surface.body) for surface in mesh.surfaces]
     quads = np.vstack([np.empty((0, 4), dtype=np.int64), *mesh.surfaces.values()])
 
     none = np.empty(0, dtype=np.int64)
-    sets = {name: [np.flatnonzero(mesh.yarn == number), none] for number, name in enumerate(mesh.yarns)}
-    sets |= {name: [none, np.arange(start, start + n)] for name, start, n in zip(mesh.surfaces, starts, sizes)}
+    sets = {body.name: [mesh.elements_of(body), none] for body in mesh.bodies}
+    sets |= {
+        surface.name: [none, np.arange(start, start + n)] for surface, start, n in zip(mesh.surfaces, starts, sizes)
+    }
+    number = yarn_numbers(mesh)
     return meshio.Mesh(
         mesh.points,
         [("hexahedron", mesh.hexahedra), ("quad", quads)],
         cell_data={
-            "yarn": [mesh.yarn + 1, np.repeat(owners, sizes).astype(mesh.yarn.dtype) + 1],
+            "yarn": [number[mesh.body], np.repeat(number[owners], sizes)],
             "fibre_axis": [mesh.fibre_axes(), np.zeros((len(quads), 3))],
         },
         cell_sets=sets,

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+
+from ..weave.bodies import Body, BodyKind, Surface, SurfaceKind
 
 
 @dataclass(frozen=True, eq=False)
@@ -13,40 +16,52 @@ class Mesh:
 
     ``points`` (nodes, 3) in mm, in the order of the file's node numbers 1, 2, ...;
     ``hexahedra`` (elements, 8) as node indices from 0, in the corner order of gmsh, VTK and
-    C3D8; ``yarn`` (elements,) indexes ``yarns``; ``surfaces`` maps ``weft_1_contact``,
-    ``weft_1_free``, ``weft_1_start``, ``weft_1_end`` ... to quadrilaterals (quads, 4).
-    The first face (corners 0 to 3) of every hexahedron looks to the start of its yarn.
+    C3D8; ``body`` (elements,) indexes ``bodies``; ``surfaces`` maps surfaces of bodies to
+    quadrilaterals (quads, 4). The first face (corners 0 to 3) of a yarn's hexahedron looks to
+    the yarn's start.
     """
 
     points: np.ndarray
     hexahedra: np.ndarray
-    yarn: np.ndarray
-    yarns: tuple[str, ...]
-    surfaces: dict[str, np.ndarray]
+    body: np.ndarray
+    bodies: tuple[Body, ...]
+    surfaces: Mapping[Surface, np.ndarray]
     other_elements: int = 0
 
-    def nodes_of(self, surface: str) -> np.ndarray:
-        """Sorted node indices of a surface."""
-        return np.unique(self.surfaces[surface])
+    @property
+    def yarns(self) -> tuple[Body, ...]:
+        """The bodies that are yarns, in the order of :attr:`bodies`."""
+        return tuple(body for body in self.bodies if body.kind is BodyKind.YARN)
 
-    def surfaces_named(self, kind: str) -> dict[str, np.ndarray]:
-        """Surfaces of one kind: ``contact``, ``free``, ``start``, ``end``."""
-        return {name: quads for name, quads in self.surfaces.items() if name.endswith(f"_{kind}")}
+    def elements_of(self, body: Body) -> np.ndarray:
+        """Indices (elements,) of a body's hexahedra."""
+        return np.flatnonzero(self.body == self.bodies.index(body))
+
+    def quads_of(self, body: Body, *kinds: SurfaceKind) -> np.ndarray:
+        """The quadrilaterals (quads, 4) of a body's surfaces of some kinds; none where it has no such surface."""
+        found = [self.surfaces[key] for kind in kinds if (key := Surface(body, kind)) in self.surfaces]
+        return np.vstack([np.empty((0, 4), dtype=np.int64), *found])
+
+    def nodes_of(self, body: Body, *kinds: SurfaceKind) -> np.ndarray:
+        """Sorted node indices of a body's surfaces of some kinds."""
+        return np.unique(self.quads_of(body, *kinds))
 
     def fibre_axes(self) -> np.ndarray:
-        """Unit vectors (elements, 3) along the yarn: the mean of the four edges that follow it."""
+        """Unit vectors (elements, 3) along the yarn, the mean of the four edges that follow it; 0 off the yarns."""
         p = self.points
         along = np.zeros((len(self.hexahedra), 3))
         for corner in range(4):
             along += p[self.hexahedra[:, corner + 4]] - p[self.hexahedra[:, corner]]
-        return along / np.linalg.norm(along, axis=1)[:, None]
+        along /= np.linalg.norm(along, axis=1)[:, None]
+        return self._on_yarns(along)
 
     def to_pyvista(self, surfaces: bool = False):
         """The mesh for PyVista: an UnstructuredGrid of the hexahedra.
 
-        Cell data ``yarn`` (from 1, in the order of the field data ``yarn_names``), ``direction`` (0 weft,
-        1 warp) and ``fibre_axis``. With ``surfaces`` a MultiBlock: the grid as ``yarns``, then every
-        surface as PolyData under its name, with its node numbers from 0 as point data ``node``.
+        Cell data ``yarn`` (from 1, in the order of the field data ``yarn_names``; 0 off the yarns),
+        ``direction`` (0 weft, 1 warp; -1 off the yarns) and ``fibre_axis``. With ``surfaces`` a
+        MultiBlock: the grid as ``yarns``, then every surface as PolyData under its name, with its node
+        numbers from 0 as point data ``node``.
         """
         from .grids import pyvista_blocks, pyvista_grid
 
@@ -64,7 +79,18 @@ class Mesh:
         return meshio_mesh(self)
 
     def across_axes(self) -> np.ndarray:
-        """Unit vectors (elements, 3) across the yarn, in the fabric's plane and normal to the fibre."""
-        fibre = self.fibre_axes()
-        across = np.cross([0.0, 0.0, 1.0], fibre)
-        return across / np.linalg.norm(across, axis=1)[:, None]
+        """Unit vectors (elements, 3) across the yarn, in plane and normal to the fibre; 0 off the yarns."""
+        across = np.cross([0.0, 0.0, 1.0], self.fibre_axes())
+        length = np.linalg.norm(across, axis=1)[:, None]
+        return np.divide(across, length, out=np.zeros_like(across), where=length > 0)
+
+    def _on_yarns(self, vectors: np.ndarray) -> np.ndarray:
+        """Vectors (elements, 3), those of elements of other bodies set to 0."""
+        is_yarn = np.array([body.kind is BodyKind.YARN for body in self.bodies])
+        return vectors if is_yarn.all() else np.where(is_yarn[self.body, None], vectors, 0.0)
+
+
+def yarn_numbers(mesh: Mesh) -> np.ndarray:
+    """For every body of a mesh its number among the yarns, from 1; 0 for what is no yarn."""
+    yarns = mesh.yarns
+    return np.array([yarns.index(body) + 1 if body in yarns else 0 for body in mesh.bodies], dtype=np.int64)

@@ -11,12 +11,16 @@ import atexit
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
 from ..model.solved import SolvedFabric
 from ..support.errors import BuildError, expect
 from ..support.interrupts import uninterrupted
+from ..weave.bodies import Body, Surface, SurfaceKind
+from ..weave.directions import Direction
+from ..weave.lattice import Lattice
 from ..weave.weaves import yarns_of
 from .count import hexahedra
 from .mesh import Mesh
@@ -77,8 +81,9 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
     plans = plan_yarns(fabric, yarns_of(fabric.weave.interlacement()), options)
     if missing := [plan.yarn.name for plan in plans if plan.yarn.name not in solids]:
         raise BuildError(f"{step}: holds no solid named {', '.join(missing)}")
-    faces = {plan.yarn.name: _classify(gmsh, plan, solids[plan.yarn.name]) for plan in plans}
-    curves = {plan.yarn.name: list(_curves(gmsh, plan, faces[plan.yarn.name])) for plan in plans}
+    lattice = fabric.lattice
+    faces = {plan.yarn.name: _classify(gmsh, plan, lattice, solids[plan.yarn.name]) for plan in plans}
+    curves = {plan.yarn.name: list(_curves(gmsh, plan, lattice, faces[plan.yarn.name])) for plan in plans}
     for plan in plans:
         _set_transfinite(gmsh, faces[plan.yarn.name], curves[plan.yarn.name])
     gmsh.option.setNumber("Mesh.MeshOnlyVisible", 1)
@@ -88,7 +93,7 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
         _space(gmsh, curves[plan.yarn.name])
     gmsh.model.mesh.generate(2)
     for plan in plans:
-        _fill(gmsh, plan, solids[plan.yarn.name], faces[plan.yarn.name])
+        _fill(gmsh, plan, lattice, solids[plan.yarn.name], faces[plan.yarn.name])
     for plan in plans:
         _name(gmsh, plan, solids[plan.yarn.name], faces[plan.yarn.name])
     gmsh.model.mesh.renumberNodes()
@@ -98,7 +103,7 @@ def _mesh(gmsh, step: Path, fabric: SolvedFabric, options: MeshOptions, msh: Pat
     gmsh.write(str(msh))
 
 
-def _classify(gmsh, plan: Plan, solid: int) -> dict:
+def _classify(gmsh, plan: Plan, lattice: Lattice, solid: int) -> dict:
     """Faces of a yarn by place: ``start``, ``end`` and (segment, side).
 
     A face is told by its middle: which control planes it lies between, and which strip of
@@ -109,6 +114,7 @@ def _classify(gmsh, plan: Plan, solid: int) -> dict:
         low, high = gmsh.model.getParametrizationBounds(2, face)
         middle = (low + high) / 2
         points = gmsh.model.getValue(2, face, [low[0], middle[1], *middle, high[0], middle[1]]).reshape(-1, 3)
+        points = lattice.to_woven(points)
         along = points[:, plan.along_axis]
         if np.ptp(along) < _PLACE:
             faces["start" if along[0] < plan.places.mean() else "end"] = face
@@ -124,7 +130,7 @@ def _classify(gmsh, plan: Plan, solid: int) -> dict:
     return faces
 
 
-def _curves(gmsh, plan: Plan, faces: dict) -> Iterator[tuple[int, np.ndarray]]:
+def _curves(gmsh, plan: Plan, lattice: Lattice, faces: dict) -> Iterator[tuple[int, np.ndarray]]:
     """Every edge of a yarn's skin and the shares of its parameter at which its nodes lie."""
     seen = set()
     for key, face in faces.items():
@@ -136,7 +142,7 @@ def _curves(gmsh, plan: Plan, faces: dict) -> Iterator[tuple[int, np.ndarray]]:
                 continue
             seen.add(curve)
             low, high = gmsh.model.getParametrizationBounds(1, curve)
-            start, end = gmsh.model.getValue(1, curve, [low[0], high[0]]).reshape(2, 3)
+            start, end = lattice.to_woven(gmsh.model.getValue(1, curve, [low[0], high[0]]).reshape(2, 3))
             axis = 2 if side in ("left", "right") else 1 - plan.along_axis
             shares = plan.strips[side][1]
             if abs(start[plan.along_axis] - end[plan.along_axis]) > _PLACE:
@@ -167,16 +173,18 @@ def _space(gmsh, curves: list) -> None:
             gmsh.model.mesh.setNode(tag, place, [parameter])
 
 
-def _fill(gmsh, plan: Plan, solid: int, faces: dict) -> None:
+def _fill(gmsh, plan: Plan, lattice: Lattice, solid: int, faces: dict) -> None:
     """Add the inner nodes, the hexahedra, and the quadrilaterals of both end sections."""
     tags, places = _outline(gmsh, plan, faces)
     template = plan.template
     inner = np.einsum("io,roc->ric", template.weights, places)
     if plan.moved is not None:
-        inner[..., [1 - plan.along_axis, 2]] += plan.moved
+        moved = np.zeros_like(inner)
+        moved[..., [1 - plan.along_axis, 2]] = plan.moved
+        inner += lattice.to_space(moved)
     first = int(gmsh.model.mesh.getMaxNodeTag()) + 1
     inner_tags = np.arange(first, first + inner.shape[0] * inner.shape[1]).reshape(inner.shape[:2])
-    quads = template.quads if plan.yarn.direction == "weft" else template.quads[:, ::-1]
+    quads = template.quads if plan.yarn.direction is Direction.WEFT else template.quads[:, ::-1]
     layer_tags = np.hstack([tags, inner_tags])
     for entity, rows in (((3, solid), slice(1, -1)), ((2, faces["start"]), [0]), ((2, faces["end"]), [-1])):
         gmsh.model.mesh.addNodes(*entity, inner_tags[rows].ravel(), inner[rows].ravel())
@@ -207,18 +215,18 @@ def _outline(gmsh, plan: Plan, faces: dict) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _name(gmsh, plan: Plan, solid: int, faces: dict) -> None:
-    name = plan.yarn.name
-    gmsh.model.addPhysicalGroup(3, [solid], name=name)
+    body = plan.yarn.body
+    gmsh.model.addPhysicalGroup(3, [solid], name=body.name)
     contact = [faces[key] for key in plan.contacts]
     ends = {faces["start"], faces["end"]}
     free = [face for face in faces.values() if face not in ends and face not in set(contact)]
     for kind, tags in (
-        ("contact", contact),
-        ("free", free),
-        ("start", [faces["start"]]),
-        ("end", [faces["end"]]),
+        (SurfaceKind.CONTACT, contact),
+        (SurfaceKind.FREE, free),
+        (SurfaceKind.START, [faces["start"]]),
+        (SurfaceKind.END, [faces["end"]]),
     ):
-        gmsh.model.addPhysicalGroup(2, tags, name=f"{name}_{kind}")
+        gmsh.model.addPhysicalGroup(2, tags, name=Surface(body, kind).name)
 
 
 def read_mesh(msh: str | Path) -> Mesh:
@@ -238,7 +246,8 @@ def _read(gmsh) -> Mesh:
     order = np.argsort(tags)
     index[tags[order]] = np.arange(len(tags))
     points[:] = coordinates.reshape(-1, 3)[order]
-    yarns, hexahedra, others = [], [], 0
+    bodies: list[Body] = []
+    hexahedra, others = [], 0
     surfaces = {}
     for dimension, group in gmsh.model.getPhysicalGroups():
         name = gmsh.model.getPhysicalName(dimension, group)
@@ -252,9 +261,9 @@ def _read(gmsh) -> Mesh:
                     others += len(elements)
         block = np.vstack(found) if found else np.empty((0, corners), dtype=np.int64)
         if dimension == 3:
-            yarns.append(name)
+            bodies.append(Body.named(name))
             hexahedra.append(block)
         else:
-            surfaces[name] = block
-    yarn = np.repeat(np.arange(len(yarns)), [len(block) for block in hexahedra])
-    return Mesh(points, np.vstack(hexahedra), yarn, tuple(yarns), surfaces, others)
+            surfaces[Surface.named(name)] = block
+    body = np.repeat(np.arange(len(bodies)), [len(block) for block in hexahedra])
+    return Mesh(points, np.vstack(hexahedra), body, tuple(bodies), MappingProxyType(surfaces), others)

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..model.solved import SolvedFabric
 from ..section.sections import Frame, Section
-from ..weave.weaves import DIRECTIONS, Yarn
+from ..weave.directions import DIRECTIONS
+from ..weave.weaves import Yarn
 from ..yarn.planes import contact_segment
 from ..yarn.skin import Skin
 from ..yarn.swept import SweptYarn
@@ -46,7 +47,7 @@ class Plan:
     @property
     def along_axis(self) -> int:
         """0 for a weft, which runs along x, 1 for a warp."""
-        return 0 if self.yarn.direction == "weft" else 1
+        return self.yarn.direction.axis
 
     @property
     def rows(self) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 from ..measured.tables import Family
 from ..section.sections import free_parabola, lateral_arc, round_between, round_free_side
 from ..support.errors import InputError, Problem, expect
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 from .closing import ALONE, BOUNDED, CLOSING, ROUNDING, RULES, SYMBOLS, Closed
 from .lengths import excess_length, slope_from_crimp
 from .plausibility import LARGEST_SLOPE, responsible, too_steep

@@ -28,7 +28,7 @@ import numpy as np
 
 from ..measured.tables import Family
 from ..support.errors import Problem
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 
 DENSEST = pi / sqrt(12)
 """Largest share of a section that parallel round fibres fill."""

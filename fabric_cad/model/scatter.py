@@ -20,7 +20,7 @@ from ..measured.family import Family
 from ..measured.row_values import RowValues
 from ..measured.rules import BOUNDS, SPACING, Rule
 from ..support.errors import InputError, Problem, expect
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 from .identification import identify
 from .solved import SolvedTable
 

@@ -29,6 +29,7 @@ from ..section.sections import KINDS, ContactSide, Frame, FreeSide
 from ..support.errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
 from ..support.numerals import number as number_of
 from ..support.numerals import whole
+from ..weave.lattice import Lattice
 from ..weave.weaves import Weave
 
 PLATEAUX = ("low", "high")
@@ -112,6 +113,11 @@ class SolvedFabric:
     def period(self) -> tuple[float, float]:
         """Extents of the elementary cell along x and y, mm."""
         return self.weave.warps * self.weft.crossed_spacing, self.weave.wefts * self.warp.crossed_spacing
+
+    @property
+    def lattice(self) -> Lattice:
+        """How the cell repeats: as woven, its directions are the axes of space."""
+        return Lattice.axis_parallel(*self.period)
 
     @classmethod
     def from_row(cls, row: Mapping[str, object]) -> SolvedFabric:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..measured.tables import Family
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 from .scatter import Spread
 from .solved import SolvedTable
 

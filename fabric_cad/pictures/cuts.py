@@ -10,7 +10,7 @@ import numpy as np
 from ..meshing.grids import grid_of
 from ..meshing.mesh import Mesh
 from ..support.arrays import checked
-from ..weave.weaves import DIRECTIONS, direction_of
+from ..weave.bodies import Body
 
 _BESIDE = 1e-6  # of the cell: how far the cut keeps from nodes that lie in its plane
 
@@ -19,7 +19,7 @@ _BESIDE = 1e-6  # of the cell: how far the cut keeps from nodes that lie in its 
 class Outline:
     """Where a cut meets one ``yarn``: closed lines (points, 2) mm, along the cut and z, at rest and deformed."""
 
-    yarn: str
+    yarn: Body
     rest: np.ndarray
     deformed: np.ndarray
 
@@ -31,31 +31,32 @@ def cut_along(mesh: Mesh, displacement: np.ndarray, yarn: str) -> list[Outline]:
     and its deformed one can be compared point by point. Raises ValueError where no yarn is called so.
     """
     checked("displacement", displacement, mesh.points.shape)
-    if yarn not in mesh.yarns:
+    named = {body.name: body for body in mesh.yarns}
+    if yarn not in named:
         raise ValueError(f"no yarn is called {yarn}")
-    along = DIRECTIONS.index(direction_of(yarn))
+    along = named[yarn].direction.axis
     across = 1 - along
 
-    nodes = np.unique(mesh.hexahedra[mesh.yarn == mesh.yarns.index(yarn)])
+    nodes = np.unique(mesh.hexahedra[mesh.elements_of(named[yarn])])
     middle = (mesh.points[nodes, across].min() + mesh.points[nodes, across].max()) / 2
     middle += _BESIDE * np.ptp(mesh.points[:, across])
 
     grid = grid_of(mesh)
     grid.point_data["displacement"] = displacement
-    grid.cell_data["yarn_index"] = mesh.yarn
+    grid.cell_data["body_index"] = mesh.body
     origin, normal = np.zeros(3), np.zeros(3)
     origin[across], normal[across] = middle, 1.0
     section = grid.slice(normal=normal, origin=origin)
     plane = [along, 2]
     return [
-        Outline(mesh.yarns[index], rest[:, plane], (rest + moved)[:, plane]) for index, rest, moved in _loops(section)
+        Outline(mesh.bodies[index], rest[:, plane], (rest + moved)[:, plane]) for index, rest, moved in _loops(section)
     ]
 
 
 def _loops(section) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
     """The closed boundary lines of every yarn's part of a section: the yarn's number, points, displacements."""
-    for index in np.unique(section.cell_data["yarn_index"]):
-        part = section.extract_cells(np.flatnonzero(section.cell_data["yarn_index"] == index))
+    for index in np.unique(section.cell_data["body_index"]):
+        part = section.extract_cells(np.flatnonzero(section.cell_data["body_index"] == index))
         rim = part.extract_surface(algorithm=None).clean()
         rim = rim.extract_feature_edges(
             boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..meshing.mesh import Mesh
 from ..support.arrays import checked
+from ..weave.bodies import Body
 from .limits import limits_of
 from .scene import EDGE, SIZE, add_lines, add_yarns, finish, new_scene, offscreen, save, surface
 from .skin import skin_of
@@ -71,11 +72,11 @@ def draw_deformed(
     save(plotter, path)
 
 
-def _shown(mesh: Mesh, hide: Collection[str]) -> list[str]:
+def _shown(mesh: Mesh, hide: Collection[str]) -> list[Body]:
     """The yarns that are not hidden. Raises ValueError where a hidden one is none, or all are."""
-    if unknown := set(hide) - set(mesh.yarns):
+    if unknown := set(hide) - {yarn.name for yarn in mesh.yarns}:
         raise ValueError(f"no yarn is called {', '.join(sorted(unknown))}")
-    if not (shown := [name for name in mesh.yarns if name not in hide]):
+    if not (shown := [yarn for yarn in mesh.yarns if yarn.name not in hide]):
         raise ValueError("no yarn is left to be drawn")
     return shown
 

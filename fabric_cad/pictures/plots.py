@@ -18,8 +18,9 @@ from ..model.solved import SolvedFabric, point_columns
 from ..section.sections import KINDS, Section, contact_section, free_section
 from ..section.splines import Spline
 from ..support.series import valid_until
-from ..weave.colours import COLOURS
-from ..weave.weaves import DIRECTIONS, Yarn, direction_of, yarns_of
+from ..weave.colours import COLOURS, colour_of
+from ..weave.directions import DIRECTIONS
+from ..weave.weaves import Yarn, yarns_of
 from ..yarn.swept import SweptYarn
 
 _POINTS = 41
@@ -354,7 +355,7 @@ def plot_crushing(cuts: Mapping[str, Sequence], scale: float, axes=None, stretch
         direction, number = name.rsplit("_", 1)
         for outline in outlines:
             moved = outline.rest + scale * (outline.deformed - outline.rest)
-            ax.fill(*moved.T, color=COLOURS[direction_of(outline.yarn)], alpha=0.75, linewidth=0)
+            ax.fill(*moved.T, color=colour_of(outline.yarn), alpha=0.75, linewidth=0)
             ax.plot(*outline.rest.T, color="black", linewidth=0.9, linestyle=(0, (4, 2)))
         ax.set(aspect=stretch, xlabel="x mm" if direction == "weft" else "y mm", ylabel="z mm")
         ax.set_title(f"along {direction} {number}", loc="left", fontsize="medium")

@@ -11,8 +11,9 @@ import numpy as np
 
 from ..meshing.mesh import Mesh
 from ..support.vtk import pyvista
+from ..weave.bodies import Body
 from ..weave.colours import COLOURS
-from ..weave.weaves import DIRECTIONS, direction_of
+from ..weave.directions import DIRECTIONS
 from .skin import Skin, skin_of
 
 SIZE = (1600, 1200)
@@ -50,11 +51,11 @@ def surface(skin: Skin, points: np.ndarray):
     return poly.compute_normals(split_vertices=False, cell_normals=False)
 
 
-def add_yarns(plotter, mesh: Mesh, points: np.ndarray, yarns: Iterable[str]) -> None:
+def add_yarns(plotter, mesh: Mesh, points: np.ndarray, yarns: Iterable[Body]) -> None:
     """Yarns in the colours of their directions, and their lines."""
     for direction in DIRECTIONS:
-        if named := [name for name in yarns if direction_of(name) == direction]:
-            skin = skin_of(mesh, named)
+        if alike := [yarn for yarn in yarns if yarn.direction is direction]:
+            skin = skin_of(mesh, alike)
             plotter.add_mesh(surface(skin, points), color=COLOURS[direction], **_GLOSS)
             add_lines(plotter, skin.lines, points)
 

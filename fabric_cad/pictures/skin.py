@@ -19,6 +19,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ..meshing.mesh import Mesh
+from ..weave.bodies import Body, SurfaceKind
 
 CREASE_DEGREES = 60
 """Angle between the faces on both sides of a section's corner from which it is a crease."""
@@ -33,12 +34,13 @@ class Skin:
     lines: np.ndarray
 
 
-def skin_of(mesh: Mesh, yarns: Iterable[str]) -> Skin:
+def skin_of(mesh: Mesh, yarns: Iterable[Body]) -> Skin:
     """The skin of some yarns; creases are those of the mesh as it is, so that they do not depend on a load."""
     wanted = set(yarns)
-    named = {name: quads for name, quads in mesh.surfaces.items() if name.rsplit("_", 1)[0] in wanted}
-    quads = np.vstack(list(named.values()))
-    is_end = np.repeat([name.endswith(("_start", "_end")) for name in named], [len(each) for each in named.values()])
+    chosen = {surface: quads for surface, quads in mesh.surfaces.items() if surface.body in wanted}
+    quads = np.vstack(list(chosen.values()))
+    ends = [surface.kind in (SurfaceKind.START, SurfaceKind.END) for surface in chosen]
+    is_end = np.repeat(ends, [len(faces) for faces in chosen.values()])
 
     edges, first, second, same_way = _shared_edges(quads, len(mesh.points))
     rim = is_end[first] != is_end[second]

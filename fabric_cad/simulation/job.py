@@ -16,7 +16,8 @@ from ..decks.keywords import EngineeringConstants, write_keywords
 from ..decks.model import Load, Touch, model_keywords
 from ..meshing.mesh import Mesh
 from ..support.cores import cores
-from ..weave.weaves import DIRECTIONS, direction_of
+from ..weave.directions import DIRECTIONS, Direction
+from ..weave.lattice import Lattice
 from .energy import cell_energy
 from .penetration import penetration
 from .progress import CaseProgress
@@ -76,7 +77,7 @@ class Job:
 def write_model(
     path: Path,
     mesh: Mesh,
-    period: tuple[float, float],
+    lattice: Lattice,
     settings: Settings,
     loads: tuple[Load, ...],
     title: str,
@@ -89,7 +90,7 @@ def write_model(
     )
     rings = 0 if contact.kind == "tie" else contact.rings
     touch = Touch(contact.kind, contact.stiffness_N_per_mm3, contact.friction, contact.stick_N_per_mm3, rings)
-    write_keywords(model_keywords(mesh, period, constants, law.hardening, touch, loads, title), path, dialect)
+    write_keywords(model_keywords(mesh, lattice, constants, law.hardening, touch, loads, title), path, dialect)
 
 
 def run_job(deck: Path, mesh: Mesh, solver: Solver, listen: Callable[[Progress], None] | None = None) -> Job:
@@ -176,15 +177,14 @@ def transverse_strains(mesh: Mesh, strain: np.ndarray) -> tuple[np.ndarray, np.n
 
 def tension_per_yarn(mesh: Mesh, pulls: Sequence[float]) -> dict[str, float]:
     """Columns ``T11_N_per_yarn`` and ``T22_N_per_yarn`` of what all wefts and all warps pull with, N."""
-    counts = [sum(name.startswith(direction) for name in mesh.yarns) for direction in DIRECTIONS]
+    counts = [sum(yarn.direction is direction for yarn in mesh.yarns) for direction in DIRECTIONS]
     return {f"{name}_N_per_yarn": pull / count for name, pull, count in zip(("T11", "T22"), pulls, counts)}
 
 
 def widths(mesh: Mesh, points: np.ndarray) -> tuple[float, float]:
     """Mean width (mm) of the wefts and of the warps at deformed ``points`` (nodes, 3): their extent across."""
-    extents: dict[str, list[float]] = {name: [] for name in DIRECTIONS}
-    for number, yarn in enumerate(mesh.yarns):
-        direction = direction_of(yarn)
-        nodes = np.unique(mesh.hexahedra[mesh.yarn == number])
-        extents[direction].append(float(np.ptp(points[nodes, 1 - DIRECTIONS.index(direction)])))
+    extents: dict[Direction, list[float]] = {direction: [] for direction in DIRECTIONS}
+    for yarn in mesh.yarns:
+        nodes = np.unique(mesh.hexahedra[mesh.elements_of(yarn)])
+        extents[yarn.direction].append(float(np.ptp(points[nodes, yarn.direction.other.axis])))
     return tuple(float(np.mean(extents[name])) for name in DIRECTIONS)

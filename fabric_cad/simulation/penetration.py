@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..meshing.mesh import Mesh
-from ..weave.weaves import DIRECTIONS, direction_of
+from ..weave.bodies import Body, SurfaceKind
 from .isoparametric import distance_to_quads, inside_hexahedra
 
 KINDS = ("crossing", "parallel")
@@ -28,25 +28,25 @@ class Penetration:
 
     ``depth`` mm: a point of the skin of yarn ``first``, at ``place`` (3,) mm in the deformed cell,
     lies so far below the skin of yarn ``second`` or of one of its periodic images. Where nothing
-    penetrates, ``depth`` is 0, the names are empty and ``place`` is NaN. ``by_pair`` maps pairs
-    of names, in the order of the mesh, to the depth of either in the other, mm; a pair of equal
-    names is a yarn and its own image in the next cell.
+    penetrates, ``depth`` is 0, the yarns are None and ``place`` is NaN. ``by_pair`` maps pairs
+    of yarns, in the order of the mesh, to the depth of either in the other, mm; a pair of equal
+    ones is a yarn and its own image in the next cell.
     """
 
     depth: float = 0.0
-    first: str = ""
-    second: str = ""
+    first: Body | None = None
+    second: Body | None = None
     place: np.ndarray = field(default_factory=lambda: np.full(3, np.nan))
-    by_pair: dict[tuple[str, str], float] = field(default_factory=dict)
+    by_pair: dict[tuple[Body, Body], float] = field(default_factory=dict)
 
     def deepest(self, kind: str) -> float:
         """Largest depth, mm, of the pairs of one of :data:`KINDS`."""
         return max((depth for pair, depth in self.by_pair.items() if kind_of(pair) == kind), default=0.0)
 
 
-def kind_of(pair: tuple[str, str]) -> str:
+def kind_of(pair: tuple[Body, Body]) -> str:
     """Which of :data:`KINDS` two yarns are."""
-    return KINDS[_direction(pair[0]) == _direction(pair[1])]
+    return KINDS[pair[0].direction is pair[1].direction]
 
 
 def penetration(mesh: Mesh, points: np.ndarray, period: np.ndarray | None = None) -> Penetration:
@@ -64,16 +64,17 @@ def penetration(mesh: Mesh, points: np.ndarray, period: np.ndarray | None = None
     _check("points", points, mesh.points.shape)
     if period is not None:
         _check("period", period, (2, 3))
-    bodies = [_Body(mesh, points, period, index) for index in range(len(mesh.yarns))]
+    yarns = mesh.yarns
+    bodies = [_Body(mesh, points, period, yarn) for yarn in yarns]
     found, by_pair = Penetration(), {}
     for (i, one), (j, other) in product(enumerate(bodies), repeat=2):
         if i == j and period is None:
             continue
         depth, place = _deepest(one, other, _shifts(period, one, other))
-        pair = (mesh.yarns[min(i, j)], mesh.yarns[max(i, j)])
+        pair = (yarns[min(i, j)], yarns[max(i, j)])
         by_pair[pair] = max(depth, by_pair.get(pair, 0.0))
         if depth > found.depth:
-            found = Penetration(depth, mesh.yarns[i], mesh.yarns[j], place)
+            found = Penetration(depth, yarns[i], yarns[j], place)
     return Penetration(found.depth, found.first, found.second, found.place, by_pair)
 
 
@@ -82,10 +83,6 @@ def _check(name: str, array: np.ndarray, shape: tuple[int, ...]) -> None:
         raise ValueError(f"{name} has shape {np.shape(array)}, not {shape}")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} holds a value that is not finite")
-
-
-def _direction(name: str) -> int:
-    return DIRECTIONS.index(direction_of(name))
 
 
 class _Boxed:
@@ -106,14 +103,13 @@ class _Body:
     the neighbouring cells included.
     """
 
-    def __init__(self, mesh: Mesh, points: np.ndarray, period: np.ndarray | None, index: int) -> None:
-        name = mesh.yarns[index]
-        self.direction = _direction(name)
-        quads = np.vstack([mesh.surfaces[f"{name}_{kind}"] for kind in ("contact", "free")])
+    def __init__(self, mesh: Mesh, points: np.ndarray, period: np.ndarray | None, yarn: Body) -> None:
+        self.direction = yarn.direction.axis
+        quads = mesh.quads_of(yarn, SurfaceKind.CONTACT, SurfaceKind.FREE)
         edges = np.unique(np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)), axis=0)
         faces = points[quads]
         self.probes = np.vstack([points[np.unique(quads)], points[edges].mean(axis=1), faces.mean(axis=1)])
-        self.elements = _Boxed(points[mesh.hexahedra[mesh.yarn == index]])
+        self.elements = _Boxed(points[mesh.hexahedra[mesh.elements_of(yarn)]])
         along = np.zeros((1, 3)) if period is None else period[self.direction] * np.array([[-1], [0], [1]])
         self.skin = _Boxed((faces + along[:, None, None]).reshape(-1, 4, 3))
 

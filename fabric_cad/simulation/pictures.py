@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from ..weave.directions import Direction
 from .job import Reached, transverse_strains
 from .report import Case
 from .stress import UNITS, yarn_stress
@@ -70,7 +71,7 @@ def draw_state(case: Case, state: Reached, label: str) -> None:
 
     mesh, title = case.cell.mesh, f"{case.cell.fabric.name}: {label}"
     _, through = transverse_strains(mesh, state.strain)
-    warps = [name for name in mesh.yarns if name.startswith("warp")]
+    warps = [yarn.name for yarn in mesh.yarns if yarn.direction is Direction.WARP]
     pictures = [
         ("_normal", state.displacement[:, 2], "displacement in z, mm", ("weft_1",)),
         ("_strain", through, "strain through the yarn (negative: crushed)", ()),

@@ -151,13 +151,13 @@ def _loads(case: Case) -> list[tuple[Load, ...]]:
 
 def _decks(case: Case, dialect: str) -> list[Path]:
     """Write the case's decks; their places."""
-    cell, settings, period = case.cell, case.settings, case.cell.fabric.period
+    cell, settings, lattice = case.cell, case.settings, case.cell.fabric.lattice
     runs, decks = _loads(case), []
     with case.stages("write deck"):
         for at, loads in enumerate(runs, 1):
             deck = case.path(f"_{at}.inp" if len(runs) > 1 else ".inp")
             title = f"{case.kind} of the elementary cell of {cell.fabric.name}"
-            write_model(deck, cell.mesh, period, settings, loads, title, dialect)
+            write_model(deck, cell.mesh, lattice, settings, loads, title, dialect)
             decks.append(deck)
     return decks
 

@@ -12,7 +12,7 @@ from ..model.closing import CLOSING
 from ..model.identification import Identified
 from ..model.plausibility import DENSEST, implausible, overfull_yarns
 from ..model.solved import point_columns
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 from ..yarn.volumes import yarn_volumes
 
 HEADLINE = (

@@ -6,7 +6,7 @@ from ..model.closing import CLOSING
 from ..model.solved import point_columns
 from ..simulation.settings import Settings
 from ..support.errors import did_you_mean, quoted
-from ..weave.weaves import DIRECTIONS
+from ..weave.directions import DIRECTIONS
 
 _WEAVE = ("over", "under", "step", "wefts", "warps")
 _DIRECTION = ("slope", "p_low", "p_high", "amplitude_mm", "thickness_mm", "width_mm", "spacing_mm", "crimp")

@@ -9,10 +9,11 @@ from math import gcd
 
 import numpy as np
 
+from .bodies import Body
+from .directions import Direction
+
 FAMILIES = ("plain", "twill", "satin", "pattern")
 """The weave types; each has one table ``<family>.csv`` and one master."""
-
-DIRECTIONS = ("weft", "warp")
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,9 @@ class Weave:
         """Warps in the elementary cell."""
         return len(self.pattern[0]) if self.pattern else self.over + self.under
 
-    def crossed_by(self, direction: str) -> int:
+    def crossed_by(self, direction: Direction) -> int:
         """Yarns that one weft, or one warp, crosses in the cell."""
-        return self.warps if direction == "weft" else self.wefts
+        return self.warps if direction == Direction.WEFT else self.wefts
 
     def interlacement(self) -> np.ndarray:
         """Boolean matrix, shape (wefts, warps): True where the weft passes over the warp."""
@@ -72,10 +73,10 @@ class Weave:
             return f"{family} {self.wefts} wefts x {self.warps} warps"
         return f"{family} {self.warps} step {self.step}" if family == "satin" else f"{family} {self.over}*{self.under}"
 
-    def floats(self, direction: str) -> tuple[float, float]:
+    def floats(self, direction: Direction) -> tuple[float, float]:
         """Mean length of a direction's low and of its high floats, in crossed yarns."""
         if not self.pattern:
-            return (self.under, self.over) if direction == "weft" else (self.over, self.under)
+            return (self.under, self.over) if direction == Direction.WEFT else (self.over, self.under)
         return _mean_floats(self, direction)
 
 
@@ -120,7 +121,7 @@ def _layers(weft_over_warp: np.ndarray) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=1024)
-def _mean_floats(weave: Weave, direction: str) -> tuple[float, float]:
+def _mean_floats(weave: Weave, direction: Direction) -> tuple[float, float]:
     yarns = yarns_of(weave.interlacement())
     high = np.array([yarn.high for yarn in yarns if yarn.direction == direction])
     floats = np.count_nonzero(high & ~np.roll(high, 1, axis=1))  # high floats; as many low ones
@@ -138,11 +139,6 @@ def weave_of(family: str, cells: Mapping) -> Weave:
     return Weave(pattern=cells["pattern"])
 
 
-def direction_of(yarn: str) -> str:
-    """``weft`` or ``warp``, from the name of a yarn."""
-    return yarn.split("_")[0]
-
-
 @dataclass(frozen=True)
 class Yarn:
     """One yarn of the elementary cell and what it meets, crossing by crossing.
@@ -153,12 +149,21 @@ class Yarn:
     continues its float there.
     """
 
-    name: str
-    direction: str
+    direction: Direction
     index: int
     high: tuple[bool, ...]
     turns_left: tuple[bool, ...]
     turns_right: tuple[bool, ...]
+
+    @property
+    def body(self) -> Body:
+        """What it is in a cell; yarns of one direction are numbered by ``index``, from 0."""
+        return Body.yarn(self.direction, self.index)
+
+    @property
+    def name(self) -> str:
+        """What files call it: ``weft_1``."""
+        return self.body.name
 
     @property
     def floats_on(self) -> tuple[bool, ...]:
@@ -172,12 +177,11 @@ class Yarn:
 def yarns_of(interlacement: np.ndarray) -> tuple[Yarn, ...]:
     """Every yarn of a cell, wefts first, from its interlacement matrix (wefts, warps)."""
     yarns = []
-    for direction, high in (("weft", interlacement), ("warp", ~interlacement.T)):
+    for direction, high in ((Direction.WEFT, interlacement), (Direction.WARP, ~interlacement.T)):
         for index in range(len(high)):
             before, after = high[index - 1], high[(index + 1) % len(high)]
             yarns.append(
                 Yarn(
-                    name=f"{direction}_{index + 1}",
                     direction=direction,
                     index=index,
                     high=tuple(high[index].tolist()),

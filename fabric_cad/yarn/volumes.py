@@ -19,7 +19,8 @@ import numpy as np
 
 from ..model.solved import PLATEAUX
 from ..section.sections import KINDS
-from ..weave.weaves import DIRECTIONS, Weave, yarns_of
+from ..weave.directions import DIRECTIONS
+from ..weave.weaves import Weave, yarns_of
 
 
 @lru_cache(maxsize=1024)

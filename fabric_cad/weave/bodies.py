@@ -1,0 +1,93 @@
+"""What a cell is made of: its bodies, and the named parts of their surfaces.
+
+Names such as ``weft_1`` and ``weft_1_contact`` are how files call them; they are written from these
+values and read back into them where a file is read, nowhere else.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import StrEnum
+
+from .directions import Direction
+
+_YARN = re.compile(r"(weft|warp)_([1-9]\d*)")
+
+
+class BodyKind(StrEnum):
+    """What a body is."""
+
+    YARN = "yarn"
+    MATRIX = "matrix"
+
+
+@dataclass(frozen=True)
+class Body:
+    """One body of a cell; a yarn has a direction and an index from 0 within it, any other has neither."""
+
+    kind: BodyKind
+    direction: Direction | None = None
+    index: int | None = None
+
+    def __post_init__(self) -> None:
+        is_yarn = self.kind is BodyKind.YARN
+        if is_yarn != (self.direction is not None) or is_yarn != (self.index is not None):
+            raise ValueError("a yarn has a direction and an index, any other body has neither")
+
+    @classmethod
+    def yarn(cls, direction: Direction, index: int) -> Body:
+        """The yarn with that index (from 0) of a direction."""
+        return cls(BodyKind.YARN, direction, index)
+
+    @classmethod
+    def named(cls, name: str) -> Body:
+        """The body that a file calls so. Raises ValueError for a name that is none."""
+        if match := _YARN.fullmatch(name):
+            return cls.yarn(Direction(match[1]), int(match[2]) - 1)
+        return cls(BodyKind(name))
+
+    @property
+    def name(self) -> str:
+        """What files call it: ``weft_1``, ``warp_3``, ``matrix``."""
+        if self.kind is BodyKind.YARN:
+            return f"{self.direction}_{self.index + 1}"
+        return str(self.kind)
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class SurfaceKind(StrEnum):
+    """A part of a yarn's surface; its ends lie a period apart."""
+
+    CONTACT = "contact"
+    FREE = "free"
+    START = "start"
+    END = "end"
+
+
+_KINDS = "|".join(SurfaceKind)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """One kind of surface of one body."""
+
+    body: Body
+    kind: SurfaceKind
+
+    @classmethod
+    def named(cls, name: str) -> Surface:
+        """The surface that a file calls so. Raises ValueError for a name that is none."""
+        if not (match := re.fullmatch(rf"(.+)_({_KINDS})", name)):
+            raise ValueError(f"{name} names no surface")
+        return cls(Body.named(match[1]), SurfaceKind(match[2]))
+
+    @property
+    def name(self) -> str:
+        """What files call it: ``weft_1_contact``."""
+        return f"{self.body.name}_{self.kind}"
+
+    def __str__(self) -> str:
+        return self.name
