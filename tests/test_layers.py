@@ -23,6 +23,7 @@ LAYERS = (
     "comparison",
     "pictures",
     "cell",
+    "composite",
     "simulation",
     "study",
     "cli",

@@ -7,16 +7,14 @@ differs for one row.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ..measured.settings_files import POISSON, POSITIVE, Check, SettingsFile
 from ..measured.shipped import shipped_families
-from ..measured.tables import Family, read_families
-from ..support.errors import InputError, Problem, did_you_mean, quoted
-from ..support.toml_files import read_toml
+from ..support.errors import InputError
 
 FILE = "simulation.toml"
 
@@ -115,11 +113,6 @@ class Settings:
 
 _TABLES = {"yarn": YarnLaw, "contact": ContactLaw, "mesh": CellMesh, "tension": TensionCase, "shear": ShearCase}
 
-Check = tuple[type, Callable, str]
-_POSITIVE: Check = (float, lambda v: 0 < v < math.inf, "is not a number above 0")
-_POISSON: Check = (float, lambda v: -1 < v < 1, "is not between -1 and 1")
-_NOT_NEGATIVE: Check = (float, lambda v: 0 <= v < math.inf, "is not a number from 0 up")
-
 
 def _count(least: int, most: int) -> Check:
     return int, lambda v: least <= v <= most, f"is not a whole number from {least} to {most}"
@@ -127,15 +120,15 @@ def _count(least: int, most: int) -> Check:
 
 _CHECKS: dict[str, dict[str, Check]] = {
     "yarn": {
-        **{f"{modulus}_MPa": _POSITIVE for modulus in ("E1", "E2", "E3", "G12", "G13", "G23")},
-        **{ratio: _POISSON for ratio in ("nu12", "nu13", "nu23")},
+        **{f"{modulus}_MPa": POSITIVE for modulus in ("E1", "E2", "E3", "G12", "G13", "G23")},
+        **{ratio: POISSON for ratio in ("nu12", "nu13", "nu23")},
         "compaction_strain": (float, lambda v: v >= 0.001, "is below 0.001 (inf: a linear law)"),
     },
     "contact": {
         "kind": (str, lambda v: v in ("penalty", "tie"), "is neither 'penalty' nor 'tie'"),
-        "stiffness_N_per_mm3": _POSITIVE,
+        "stiffness_N_per_mm3": POSITIVE,
         "friction": (float, lambda v: 0 <= v <= 2, "is not between 0 and 2"),
-        "stick_N_per_mm3": _POSITIVE,
+        "stick_N_per_mm3": POSITIVE,
         "rings": _count(0, 20),
         "valid_penetration": (float, lambda v: 0 < v <= 0.5, "is not above 0 and up to 0.5"),
     },
@@ -163,18 +156,18 @@ def read_settings(families: str | Path, row: str) -> Settings:
 
     Raises :class:`InputError` naming file, line, key, value and bound of all that is wrong.
     """
-    layers = [_File(shipped_families() / FILE)]
+    layers = [SettingsFile(shipped_families() / FILE, _CHECKS)]
     own = Path(families) / FILE
     if own.exists():
-        layers.append(_File(own))
+        layers.append(SettingsFile(own, _CHECKS))
     problems = [problem for layer in layers for problem in layer.problems]
     if problems:
         raise InputError(problems)
+
     merged: dict[str, dict] = {table: {} for table in _TABLES}
     for layer in layers:
-        for tables in (layer.content, layer.content.get("rows", {}).get(row, {})):
-            for table in _TABLES:
-                merged[table] |= tables.get(table, {})
+        for table, keys in layer.tables(row).items():
+            merged[table] |= keys
     merged["tension"]["ratios"] = tuple(map(float, merged["tension"]["ratios"]))
     settings = Settings(**{table: kind(**merged[table]) for table, kind in _TABLES.items()})
     if np.linalg.eigvalsh(settings.yarn.compliance).min() <= 0:
@@ -183,66 +176,3 @@ def read_settings(families: str | Path, row: str) -> Settings:
             last.problem("yarn", "nu12", "the yarn's moduli and Poisson ratios give no stable material", row)
         )
     return settings
-
-
-class _File:
-    """One file, parsed, with everything that is wrong in it."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = str(path)
-        self.problems: list[Problem] = []
-        self.content, self.lines = read_toml(path)
-        for table, keys in self.content.items():
-            if table == "rows" and isinstance(keys, dict):
-                for row, tables in keys.items():
-                    self._check_row(path.parent, row, tables)
-            else:
-                self._check_table(table, keys, "")
-
-    def _check_row(self, families: Path, row: str, tables: object) -> None:
-        known = _row_names(families)
-        if row not in known and did_you_mean(row, known):  # a slip; what is like no row may be left of one
-            self.problems.append(self.problem("", f"rows.{row}", f"no row is called so{did_you_mean(row, known)}"))
-        if not isinstance(tables, dict):
-            self.problems.append(self.problem("", f"rows.{row}", "is not a table"))
-            return
-        for name, inner in tables.items():
-            self._check_table(name, inner, row)
-
-    def _check_table(self, table: str, keys: object, row: str) -> None:
-        if table not in _TABLES:
-            self.problems.append(
-                self.problem("", table, f"no such table{did_you_mean(table, [*_TABLES, 'rows'])}", row)
-            )
-        elif not isinstance(keys, dict):
-            self.problems.append(self.problem("", table, "is not a table", row))
-        else:
-            for key, value in keys.items():
-                self._check(table, key, value, row)
-
-    def _check(self, table: str, key: str, value: object, row: str) -> None:
-        checks = _CHECKS[table]
-        if key not in checks:
-            self.problems.append(self.problem(table, key, f"no such key in [{table}]{did_you_mean(key, checks)}", row))
-            return
-        kind, sound, complaint = checks[key]
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        fits = number if kind is float else isinstance(value, kind) and not isinstance(value, bool)
-        if not (fits and sound(value)):
-            self.problems.append(self.problem(table, key, f"{quoted(value)} {complaint}", row))
-
-    def problem(self, table: str, key: str, message: str, row: str = "") -> Problem:
-        place = ".".join(part for part in (table, key) if part)
-        line = self.lines.get(f"rows.{row}.{place}", self.lines.get(place))
-        return Problem(message, self.path, line, key, row or None)
-
-
-def _row_names(families: Path) -> list[str]:
-    """Names of all rows of a folder of family tables, unfinished ones too, as far as it can be read."""
-    try:
-        read = read_families(families, partial=True).values()
-    except InputError:
-        return []
-    tables = [table for table in read if isinstance(table, Family)]
-    refused = [problem.row for table in tables for problem in table.refused if problem.row]
-    return [*(name for table in tables for name in table.names), *refused]
