@@ -170,7 +170,7 @@ def test_the_solved_table_keeps_the_pattern(tmp_path):
 
 def test_the_report_tells_the_pattern(tmp_path):
     from fabric_cad.cell.pipeline import make_cell
-    from fabric_cad.cell.report import summary
+    from fabric_cad.cell.summary import summary
 
     row = table("pattern", {"name": "rib", "pattern": "110/001"} | ROW)
     report = make_cell(row, tmp_path, {"size": 1.0})

@@ -129,8 +129,9 @@ def test_distance_to_warped_quadrilaterals(seed):
     weights = np.hstack([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t])
     sampled = np.linalg.norm(np.einsum("sc,ncd->nsd", weights, corners) - points[:, None], axis=2).min(axis=1)
     found = distance_to_quads(points, corners)
-    assert (found <= sampled + 1e-12).all() and (found >= sampled - 1e-2).all()
-    assert found == pytest.approx(sampled, abs=1e-3, rel=1e-3)
+    assert (found <= sampled + 1e-12).all()
+    # half a step of the grid is at most 0.005 of such a quadrilateral away from the nearest place
+    assert (sampled**2 <= found**2 + 1e-4).all()
     assert (distance_to_quads(corners[:, 2], corners) == 0).all()
     assert distance_to_quads(corners.mean(axis=1), corners).max() < 1e-15
 

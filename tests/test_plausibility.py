@@ -1,14 +1,18 @@
 """What is seldom true of a fabric gets a warning, what no yarn can do is refused, whole tables at once."""
 
 import json
+from dataclasses import fields
 from math import atan, cos, pi, sqrt
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from fabrics import TWILL32, UNBALANCED, table
 
-from fabric_cad.cell.report import check_report
+from fabric_cad.cell.checks import check_report, doubts
+from fabric_cad.cell.figures import MeshFigures, Volumes
+from fabric_cad.cell.report import CellReport
 from fabric_cad.cli import main
 from fabric_cad.model.identification import identify, identify_rows
 from fabric_cad.model.plausibility import (
@@ -17,7 +21,6 @@ from fabric_cad.model.plausibility import (
     LEAST_JACOBIAN,
     LOW_JACOBIAN,
     SLACKEST,
-    doubtful_report,
     implausible,
 )
 from fabric_cad.support.errors import BuildError, InputError
@@ -102,15 +105,18 @@ def test_a_report_and_the_command_say_the_same(here, capsys):
     assert any(sentence.startswith("families/twill.csv:2: weft_crimp: ") for sentence in warnings)
 
 
-def report_of(jacobian):
-    mesh = {"min_scaled_jacobian": jacobian, "scaled_jacobian_edges_allow": 0.5, "other_elements": 0}
-    mesh |= dict.fromkeys(("contact_nodes", "coincident_contact_nodes", "end_nodes", "matching_end_nodes"), 4)
-    return {
-        "row": "r",
-        "consistency": {"max_penetration_mm": 0.0, "max_contact_gap_mm": 0.0},
-        "volumes": {},
-        "mesh": mesh,
-    }
+def report_of(jacobian, volumes=None):
+    """A report of nothing but what is looked at."""
+    figures = {field.name: 4 for field in fields(MeshFigures)}
+    figures |= {"min_scaled_jacobian": jacobian, "scaled_jacobian_edges_allow": 0.5, "other_elements": 0}
+    return CellReport(
+        fabric=SimpleNamespace(name="r"),
+        identification=None,
+        consistency=SimpleNamespace(max_penetration=0.0, max_contact_gap=0.0),
+        volumes=volumes or Volumes(1.0, 2.0),
+        mesh=MeshFigures(**figures),
+        seconds={},
+    )
 
 
 @pytest.mark.parametrize("jacobian", [-0.2, 0.0, LEAST_JACOBIAN, float("nan")])
@@ -124,14 +130,14 @@ def test_elements_no_solver_takes_are_not_delivered(jacobian):
 def test_low_elements_are_delivered_with_a_warning():
     report = report_of(LOW_JACOBIAN / 2)
     check_report(report)
-    (sentence,) = doubtful_report(report)
+    (sentence,) = doubts(report)
     assert "smallest scaled Jacobian of the mesh is 0.01, below 0.02" in sentence and "(row r)" in sentence
-    assert doubtful_report(report_of(LOW_JACOBIAN)) == []
+    assert doubts(report_of(LOW_JACOBIAN)) == []
 
 
 def test_fibres_that_do_not_fit_are_told():
-    report = report_of(0.5) | {"volumes": {"weft_fibre_fraction": 0.95, "warp_fibre_fraction": 0.6}}
-    (sentence,) = doubtful_report(report)
+    report = report_of(0.5, Volumes(1.0, 2.0, weft_fibre_fraction=0.95, warp_fibre_fraction=0.6))
+    (sentence,) = doubts(report)
     assert sentence.startswith("weft_linear_density_tex: fibres fill 95 % of the yarn's volume, above 91 %")
 
 

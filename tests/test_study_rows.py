@@ -170,7 +170,7 @@ def test_the_quadrature_of_this_test_knows_a_closed_form():
 def test_identified_figures_are_those_of_the_report(family, row, tmp_path):
     measured = table(family, row)
     stages = Stages()
-    report = flat(checked_report(make_step(measured, tmp_path, stages), None, stages))
+    report = flat(checked_report(make_step(measured, tmp_path, stages), None, stages).content())
     figures = identified_figures(measured, identify_rows(measured))
     found = {name: values[0] for name, values in figures.items()}
     assert json.loads(json.dumps(report)) == report

@@ -71,7 +71,7 @@ def test_a_wrong_row_stops_its_own_cell_only(here, capsys, monkeypatch, wrong):
     monkeypatch.setattr(
         "fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or {"warnings": []}
     )
-    monkeypatch.setattr("fabric_cad.cell.report.summary", lambda report: "made")
+    monkeypatch.setattr("fabric_cad.cell.summary.summary", lambda report: "made")
     assert main(["cell", "good"]) == 0 and made == [("good",)]
     monkeypatch.undo()
     capsys.readouterr()

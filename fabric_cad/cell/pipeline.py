@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ..cad import Consistency
     from ..meshing import Mesh, MeshOptions
     from ..meshing.quality import Quality
+    from .report import CellReport
 
 
 @dataclass
@@ -129,24 +130,25 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
         return Meshed(mesh, mesh_quality(mesh), allowed_scaled_jacobian(made.fabric))
 
 
-def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> dict:
+def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> CellReport:
     """The report of what was made. Raises :class:`BuildError` where it shows a cell that is not consistent."""
-    from ..model.plausibility import doubtful_report, implausible
-    from .report import cell_report, check_report, yarn_data
+    from ..model.plausibility import implausible
+    from .checks import check_report, doubts
+    from .figures import cell_volumes, mesh_figures, yarn_data
+    from .report import CellReport, Identification
 
-    report = cell_report(
-        made.fabric,
-        made.table.row(made.fabric.name),
-        made.table.comparisons[0],
-        made.consistency,
-        meshed,
-        yarn_data(made.row, 0),
-        {key: round(value, 4) for key, value in stages.seconds.items()},
-        made.std,
+    row = made.table.row(made.fabric.name)
+    report = CellReport(
+        fabric=made.fabric,
+        identification=Identification.of_row(row, made.table.comparisons[0], made.std),
+        consistency=made.consistency,
+        volumes=cell_volumes(made.fabric, made.consistency, yarn_data(made.row, 0)),
+        mesh=None if meshed is None else mesh_figures(made.fabric, meshed),
+        seconds={stage: round(seconds, 4) for stage, seconds in stages.seconds.items()},
     )
     check_report(report)
-    report["warnings"] = [*map(str, implausible(made.row, made.table.columns)), *doubtful_report(report)]
-    return report
+    warnings = [*map(str, implausible(made.row, made.table.columns)), *doubts(report)]
+    return replace(report, warnings=tuple(warnings))
 
 
 def write_report(report: dict, folder: Path) -> None:
@@ -191,5 +193,5 @@ def make_cell(
             write_vtu(meshed.mesh, meshed.quality, folder / f"{name}.vtu")
         with stages("picture"):
             draw_cell(meshed.mesh, folder / f"{name}.png", name)
-        report |= checked_report(made, meshed, stages) | trace(row, options)
+        report |= checked_report(made, meshed, stages).content() | trace(row, options)
     return report

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..meshing.hexahedron import FACES
 from ..meshing.mesh import Mesh
 from ..weave.bodies import Surface, SurfaceKind
 from ..weave.directions import DIRECTIONS
-
-# corners of the faces S1 ... S6 of C3D8
-FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])
 
 _UPRIGHT = 0.1  # sine up to which a face is one of the yarn's sides, neither top nor bottom
 

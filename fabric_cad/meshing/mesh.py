@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..weave.bodies import Body, BodyKind, Surface, SurfaceKind
+from .hexahedron import LENGTHWISE
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +51,8 @@ class Mesh:
         """Unit vectors (elements, 3) along the yarn, the mean of the four edges that follow it; 0 off the yarns."""
         p = self.points
         along = np.zeros((len(self.hexahedra), 3))
-        for corner in range(4):
-            along += p[self.hexahedra[:, corner + 4]] - p[self.hexahedra[:, corner]]
+        for start, end in LENGTHWISE:
+            along += p[self.hexahedra[:, end]] - p[self.hexahedra[:, start]]
         along /= np.linalg.norm(along, axis=1)[:, None]
         return self._on_yarns(along)
 

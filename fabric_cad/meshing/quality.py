@@ -28,23 +28,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .hexahedron import EDGES
 from .mesh import Mesh
 
-_EDGES = np.array(
-    [
-        [(0, 1), (3, 2), (4, 5), (7, 6)],
-        [(0, 3), (1, 2), (4, 7), (5, 6)],
-        [(0, 4), (1, 5), (2, 6), (3, 7)],
-    ]
-)
-"""Opposite edges, in three directions; shape (directions, 4, ends)."""
-
-_CORNERS = [tuple(int(np.flatnonzero((edges == corner).any(axis=1))[0]) for edges in _EDGES) for corner in range(8)]
+_MEETING = [tuple(int(np.flatnonzero((edges == corner).any(axis=1))[0]) for edges in EDGES) for corner in range(8)]
 """Which edge of each direction meets a corner."""
 
 _OUTWARDS = [
-    tuple(1 if edges[number, 0] == corner else -1 for edges, number in zip(_EDGES, met))
-    for corner, met in enumerate(_CORNERS)
+    tuple(1 if edges[number, 0] == corner else -1 for edges, number in zip(EDGES, met))
+    for corner, met in enumerate(_MEETING)
 ]
 """Whether those edges leave the corner (1) or come to it (-1)."""
 
@@ -84,7 +76,7 @@ def hexahedra_quality(points: np.ndarray, hexahedra: np.ndarray) -> Quality:
 def _figures(corners: np.ndarray) -> np.ndarray:
     """Figures (5, elements) of hexahedra (elements, 8, 3)."""
     corners = np.ascontiguousarray(corners.transpose(1, 2, 0))
-    edges = corners[_EDGES[..., 1]] - corners[_EDGES[..., 0]]  # directions, 4, xyz, elements
+    edges = corners[EDGES[..., 1]] - corners[EDGES[..., 0]]  # directions, 4, xyz, elements
     lengths = _lengths(edges)
     axes = edges.sum(axis=1)
     extents = _lengths(axes)
@@ -111,8 +103,8 @@ def _figures(corners: np.ndarray) -> np.ndarray:
 
 
 def _units(edges: np.ndarray) -> Iterator[tuple[np.ndarray, ...]]:
-    """The three edges at each corner, in the directions of :data:`_EDGES`."""
-    for met in _CORNERS:
+    """The three edges at each corner, in the directions of :data:`EDGES`."""
+    for met in _MEETING:
         yield tuple(edges[direction, number] for direction, number in enumerate(met))
 
 

@@ -105,18 +105,3 @@ def overfull_yarns(row: str, fibre_fractions: Mapping[str, float]) -> list[str]:
             message = f"{full}, above {100 * DENSEST:.0f} %, the densest packing"
             told.append(str(Problem(message, column=f"{direction}_linear_density_tex", row=row)))
     return told
-
-
-def doubtful_report(report: Mapping) -> list[str]:
-    """Sentences on what a cell's report shows: fibres that do not fit their yarn, elements of low quality."""
-    row, volumes, mesh = report["row"], report["volumes"], report.get("mesh")
-    shares = {d: volumes.get(f"{d}_fibre_fraction", 0.0) for d in DIRECTIONS}
-    told = overfull_yarns(row, shares)
-
-    if mesh is not None and mesh["min_scaled_jacobian"] < LOW_JACOBIAN:
-        allowed = f"the yarns' edges allow {mesh['scaled_jacobian_edges_allow']:.2g}"
-        told.append(
-            f"the smallest scaled Jacobian of the mesh is {mesh['min_scaled_jacobian']:.2g}, "
-            f"below {LOW_JACOBIAN:g} ({allowed}): a solver may lose accuracy there (row {row})"
-        )
-    return told

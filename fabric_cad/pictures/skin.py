@@ -3,7 +3,7 @@
     start _______ crease (a section's corner) _______ end        drawn: the rims of both ends
          |   |   |   |   |   |   |   |   |   |   |   |           and creases, whole or not at all
          |___|___|___|___|___|___|___|___|___|___|___|
-                 along the yarn, corner i to i + 4
+                 along the yarn
 
 A yarn's section has the same corners from its start to its end. A steep fold *across* a yarn, as
 in the narrow gap under a float, is no edge of it and is shaded, not drawn.
@@ -18,6 +18,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from ..meshing.hexahedron import LENGTHWISE
 from ..meshing.mesh import Mesh
 from ..weave.bodies import Body, SurfaceKind
 
@@ -82,7 +83,7 @@ def _angles(mesh: Mesh, quads: np.ndarray, first, second, same_way) -> np.ndarra
 def _creases(mesh: Mesh, edges: np.ndarray, angles: np.ndarray) -> np.ndarray:
     """The edges (edges,) bool on lines along a yarn most of which is a crease."""
     nodes = len(mesh.points)
-    along = np.sort(np.vstack([mesh.hexahedra[:, [corner, corner + 4]] for corner in range(4)]), axis=1)
+    along = np.sort(np.vstack([mesh.hexahedra[:, ends] for ends in LENGTHWISE]), axis=1)
     lengthwise = np.isin(_keys(edges, nodes), _keys(along, nodes))
     lines = edges[lengthwise]
     joined = coo_matrix((np.ones(len(lines)), lines.T), shape=(nodes, nodes))

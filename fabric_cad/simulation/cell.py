@@ -34,4 +34,4 @@ def loaded_cell(row: Family, settings: Settings, options: Mapping, folder: Path,
     made = make_step(row, folder, stages)
     used = mesh_options(made.fabric, **asked)
     meshed = make_mesh(made, used, stages)
-    return Cell(made.fabric, meshed.mesh, used, checked_report(made, meshed, stages))
+    return Cell(made.fabric, meshed.mesh, used, checked_report(made, meshed, stages).content())

@@ -8,17 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
+from ..meshing.hexahedron import GAUSS_POINTS, shape_slopes
 from ..meshing.mesh import Mesh
 from .settings import YarnLaw
-
-_CORNERS = np.array(
-    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]
-)
-_GAUSS = np.array(list(product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
 
 
 @dataclass(frozen=True)
@@ -48,8 +43,8 @@ def gauss_points(mesh: Mesh, displacement: np.ndarray) -> Iterator[Point]:
     fibre, across = mesh.fibre_axes(), mesh.across_axes()
     axes = np.stack([fibre, across, np.cross(fibre, across)], axis=1)
     places, moved = mesh.points[mesh.hexahedra], displacement[mesh.hexahedra]
-    for point in _GAUSS:
-        slopes = _slopes(point)
+    for point in GAUSS_POINTS:
+        slopes = shape_slopes(point)
         jacobian = np.einsum("eni,nj->eij", places, slopes)
         change = np.einsum("eni,nj,ejk->eik", moved, slopes, np.linalg.inv(jacobian), optimize=True)
         gradient = np.eye(3) + np.einsum("eai,eij,ebj->eab", axes, change, axes, optimize=True)
@@ -70,9 +65,3 @@ def cell_energy(mesh: Mesh, displacement: np.ndarray, law: YarnLaw) -> Energy:
         total += float((density * point.volume).sum())
         least = min(least, float(point.ratio.min()))
     return Energy(total, least)
-
-
-def _slopes(point: np.ndarray) -> np.ndarray:
-    """Derivatives (8, 3) of the corners' shape functions at a point of the unit element."""
-    factors = 1 + _CORNERS * point
-    return np.stack([_CORNERS[:, i] * factors[:, (i + 1) % 3] * factors[:, (i + 2) % 3] for i in range(3)], axis=1) / 8

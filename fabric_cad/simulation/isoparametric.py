@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-_HEXAHEDRON = np.array(
-    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], dtype=float
-)
+from ..meshing.hexahedron import CORNERS
+
+_HEXAHEDRON = CORNERS.astype(float)
 _QUADRILATERAL = _HEXAHEDRON[:4, :2]
 _STEPS = 25
 _CONVERGED = 1e-14

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..cell.report import YARN_DATA
+from ..cell.figures import YARN_DATA
 from ..measured.tables import Family
 from ..model.closing import CLOSING
 from ..model.identification import Identified
@@ -174,7 +174,7 @@ def _volumes(table: Family, found: Identified, weaves, wefts, warps) -> dict[str
 
 
 def _yarn_data(table: Family, rows: np.ndarray) -> dict[str, np.ndarray]:
-    """:func:`fabric_cad.cell.report.yarn_data` of many rows, NaN where not given."""
+    """:func:`fabric_cad.cell.figures.yarn_data` of many rows, NaN where not given."""
     found = {name: table.measured[name][rows] for name in YARN_DATA}
     weft, warp = (found[f"{d}_linear_density_tex"] for d in DIRECTIONS)
     return found | {"warp_linear_density_tex": np.where(table.balanced[rows], weft, warp)}

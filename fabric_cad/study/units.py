@@ -49,7 +49,7 @@ class Work:
 
 
 def _cell(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
-    return checked_report(make_step(row, folder, stages), None, stages)
+    return checked_report(make_step(row, folder, stages), None, stages).content()
 
 
 def _mesh(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
@@ -57,7 +57,8 @@ def _mesh(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
 
     made = make_step(row, folder, stages)
     options = mesh_options(made.fabric, **work.mesh)
-    return checked_report(made, make_mesh(made, options, stages), stages) | {"options": asdict(options)}
+    report = checked_report(made, make_mesh(made, options, stages), stages)
+    return report.content() | {"options": asdict(options)}
 
 
 def _tension(row: Family, work: Work, folder: Path, stages: Stages) -> dict:

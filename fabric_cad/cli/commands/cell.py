@@ -40,7 +40,7 @@ def run(options: CellOptions, voice: Voice) -> int:
 def make(name: str, options: CellOptions, voice: Voice) -> None:
     """Make the cell of one row in OUT/<row>."""
     from ...cell.pipeline import Stages, make_cell
-    from ...cell.report import summary
+    from ...cell.summary import summary
     from ...meshing.count import hexahedra
     from ...meshing.options import mesh_options
     from ...model.identification import identify
