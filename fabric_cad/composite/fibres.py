@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cell.report import yarn_data
+from ..cell.figures import yarn_data
 from ..measured.tables import Family
 from ..support.errors import InputError, Problem
-from ..weave.directions import DIRECTIONS
+from ..weave.directions import DIRECTIONS, Direction
 from ..yarn.profiles import section_areas, slopes
 from ..yarn.swept import SweptYarn
 from .constituents import CLOSEST_PACKING, FILE, Constituents
@@ -30,9 +30,9 @@ class FibreSections:
     ``places`` says of each direction where a fraction that is too high is to be put right.
     """
 
-    areas: Mapping[str, float]
+    areas: Mapping[Direction, float]
     fraction: float | None
-    places: Mapping[str, Problem]
+    places: Mapping[Direction, Problem]
 
 
 def fibre_sections(row: Family, constituents: Constituents) -> FibreSections:
