@@ -13,24 +13,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import fabric_cad
-from fabric_cad.comparison.models import (
-    MODELS,
-    TOLERANCE,
-    Model,
-    circular,
-    compare,
-    comparison_table,
-    constant_section,
-    crossing_gap,
-    crossings,
-    elliptic,
-    lens_radius,
-    lenticular,
-    measure,
-    sinusoidal,
-    straight_bars,
-    yarn_volume,
-)
+from fabric_cad.comparison import MODELS, TOLERANCE, Model, compare, comparison_table, measure
+from fabric_cad.comparison.crossings import crossings, facing
+from fabric_cad.comparison.measures import yarn_volume
+from fabric_cad.comparison.models import constant_section
+from fabric_cad.comparison.profiles import elliptic, lens_radius, lenticular
+from fabric_cad.comparison.trajectories import circular, sinusoidal, straight_bars
 from fabric_cad.model.identification import identify
 from fabric_cad.pictures.plots import plot_gap_maps, plot_model_cuts
 from fabric_cad.support.errors import BuildError, InputError
@@ -92,7 +80,7 @@ def test_every_model_touches_at_the_centre_of_every_crossing(seed):
     for model in MODELS:
         for weft, warp in crossings(fabric):
             try:
-                gap = crossing_gap(fabric, model, weft, warp, np.zeros(1), np.zeros(1))
+                gap = facing(fabric, model, (weft, warp), np.zeros(1), np.zeros(1)).gap
             except BuildError:
                 assert model.title.startswith("circular")
                 break
@@ -151,7 +139,7 @@ def test_two_straight_lenses_touch_at_one_point(plain):
     model = Model("straight", constant_section(lambda u, *_: 0 * u, lenticular))
     weft, warp = next(crossings(plain))
     v = np.linspace(-0.5, 0.5, 41) * plain.weft.width
-    gap = crossing_gap(plain, model, weft, warp, v, v)
+    gap = facing(plain, model, (weft, warp), v, v).gap
     assert gap[20, 20] == pytest.approx(0, abs=1e-15)
     assert np.count_nonzero(gap < 1e-6) == 1
     found = measure(plain, model)
@@ -183,7 +171,7 @@ def test_bars_penetrate_as_deep_as_a_chord_cuts_an_ellipse(plain):
 def test_an_arc_of_the_lens_radius_touches_the_lens_along_the_arc(plain):
     weft, warp = next(crossings(plain))
     v = np.linspace(-0.1, 0.1, 21) * plain.warp.width
-    gap = crossing_gap(plain, MODELS[3], weft, warp, v, v)
+    gap = facing(plain, MODELS[3], (weft, warp), v, v).gap
     assert np.max(np.abs(gap)) < 1e-13
 
 
@@ -241,7 +229,7 @@ def test_the_pictures_are_drawn(twill):
 
 def test_comparing_loads_no_cad_and_no_pictures():
     absent = ("cadquery", "OCP", "gmsh", "scipy", "matplotlib")
-    code = f"import sys, fabric_cad.comparison.models; print([name for name in {absent!r} if name in sys.modules])"
+    code = f"import sys, fabric_cad.comparison; print([name for name in {absent!r} if name in sys.modules])"
     place = Path(fabric_cad.__file__).parents[1]
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=place, check=True)
     assert done.stdout.strip() == "[]"

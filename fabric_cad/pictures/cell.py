@@ -30,12 +30,9 @@ def show_cell(mesh: Mesh, title: str) -> None:
 
     Raises :class:`OutputError` without a display.
     """
-    if (
-        os.name == "posix"
-        and os.uname().sysname == "Linux"
-        and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-    ):
+    if _no_display():
         raise OutputError("no display to open a window on (DISPLAY is not set); the picture is in the cell's folder")
+
     plotter = _scene_of(mesh)
     plotter.add_axes()
     plotter.title = title
@@ -43,7 +40,14 @@ def show_cell(mesh: Mesh, title: str) -> None:
     plotter.show(title=title)
 
 
+def _no_display() -> bool:
+    """True on a Linux that has neither an X server nor Wayland."""
+    on_linux = os.name == "posix" and os.uname().sysname == "Linux"
+    return on_linux and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
 def window_size(screen: tuple[int, int]) -> tuple[int, int]:
     """Pixels of a window of the pictures' shape on a screen of so many pixels across and down."""
-    share = min(1.0, *(_OF_THE_SCREEN * there / wanted for there, wanted in zip(screen, SIZE)))
-    return tuple(int(share * wanted) for wanted in SIZE)
+    width, height = SIZE
+    share = min(1.0, _OF_THE_SCREEN * screen[0] / width, _OF_THE_SCREEN * screen[1] / height)
+    return int(share * width), int(share * height)

@@ -17,7 +17,10 @@ _BESIDE = 1e-6  # of the cell: how far the cut keeps from nodes that lie in its 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """Where a cut meets one ``yarn``: closed lines (points, 2) mm, along the cut and z, at rest and deformed."""
+    """Where a cut meets one ``yarn``: closed lines (points, 2), along the cut and z, mm.
+
+    The same material points at ``rest`` and ``deformed``.
+    """
 
     yarn: Body
     rest: np.ndarray
@@ -25,18 +28,18 @@ class Outline:
 
 
 def cut_along(mesh: Mesh, displacement: np.ndarray, yarn: str) -> list[Outline]:
-    """Cut the cell at rest by the upright plane along a yarn's middle, and carry the cut's points along.
+    """Cut the cell at rest by the upright plane along a yarn's middle, and carry the cut along.
 
-    ``displacement`` (nodes, 3) mm. The plane's material points stay the same, so that a shape at rest
-    and its deformed one can be compared point by point. Raises ValueError where no yarn is called so.
+    ``displacement`` (nodes, 3) mm. The plane's material points stay the same, so that a shape at
+    rest and its deformed one can be compared point by point. Raises ValueError where no yarn is
+    called so.
     """
     checked("displacement", displacement, mesh.points.shape)
     named = {body.name: body for body in mesh.yarns}
-    if yarn not in named:
+    if yarn not in named or (direction := named[yarn].direction) is None:
         raise ValueError(f"no yarn is called {yarn}")
-    along = named[yarn].direction.axis
-    across = 1 - along
 
+    along, across = direction.axis, direction.other.axis
     nodes = np.unique(mesh.hexahedra[mesh.elements_of(named[yarn])])
     middle = (mesh.points[nodes, across].min() + mesh.points[nodes, across].max()) / 2
     middle += _BESIDE * np.ptp(mesh.points[:, across])
@@ -47,20 +50,31 @@ def cut_along(mesh: Mesh, displacement: np.ndarray, yarn: str) -> list[Outline]:
     origin, normal = np.zeros(3), np.zeros(3)
     origin[across], normal[across] = middle, 1.0
     section = grid.slice(normal=normal, origin=origin)
-    plane = [along, 2]
+
+    in_plane = [along, 2]
     return [
-        Outline(mesh.bodies[index], rest[:, plane], (rest + moved)[:, plane]) for index, rest, moved in _loops(section)
+        Outline(mesh.bodies[index], rest[:, in_plane], (rest + moved)[:, in_plane])
+        for index, rest, moved in _loops(section)
     ]
 
 
 def _loops(section) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
-    """The closed boundary lines of every yarn's part of a section: the yarn's number, points, displacements."""
-    for index in np.unique(section.cell_data["body_index"]):
-        part = section.extract_cells(np.flatnonzero(section.cell_data["body_index"] == index))
+    """The closed boundary lines of every body's part of a section.
+
+    The body's index, then points and their displacements, each (points, 3) mm.
+    """
+    body = section.cell_data["body_index"]
+    for index in np.unique(body):
+        part = section.extract_cells(np.flatnonzero(body == index))
         rim = part.extract_surface(algorithm=None).clean()
         rim = rim.extract_feature_edges(
-            boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
+            boundary_edges=True,
+            feature_edges=False,
+            manifold_edges=False,
+            non_manifold_edges=False,
         )
+
         lines = rim.strip(join=True, max_length=len(rim.points) + 1)
+        displacement = lines.point_data["displacement"]
         for line in lines.cell:
-            yield int(index), lines.points[line.point_ids], lines.point_data["displacement"][line.point_ids]
+            yield int(index), lines.points[line.point_ids], displacement[line.point_ids]
