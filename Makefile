@@ -105,7 +105,7 @@ bench-compare: $(READY) ## A=run.json B=run.json: two runs of bench side by side
 
 .PHONY: golden
 golden: $(READY) ## rewrite the golden decks of the tests
-	@$(BIN)/python -m pytest -n 0 tests/test_deck.py --rewrite-golden
+	@$(BIN)/python -m pytest -n 0 tests/decks --rewrite-golden
 
 .PHONY: lock
 lock: ## renew requirements.lock from pyproject.toml (needs uv)

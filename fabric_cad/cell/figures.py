@@ -66,17 +66,18 @@ class Volumes:
 def cell_volumes(fabric: SolvedFabric, consistency: Consistency, data: Mapping[str, float | None]) -> Volumes:
     """The volumes of a cell's solids, with ``data`` of :func:`yarn_data`."""
     x, y = fabric.period
-    tex = {d: data.get(f"{d}_linear_density_tex") for d in DIRECTIONS}
+    given = {d: data.get(f"{d}_linear_density_tex") for d in DIRECTIONS}
+    tex = {d: linear for d, linear in given.items() if linear}
     fibre = data.get("fibre_density_g_cm3")
 
     areal = None
-    if all(tex.values()):  # tex is g/km; yarns per mm times g/km is g/m2
+    if len(tex) == len(DIRECTIONS):  # tex is g/km; yarns per mm times g/km is g/m2
         areal = sum(tex[d] * (1 + fabric.directions[d].crimp) / fabric.crossed(d).crossed_spacing for d in DIRECTIONS)
 
     shares: dict[Direction, float | None] = dict.fromkeys(DIRECTIONS)
     counts, extents = (fabric.weave.wefts, fabric.weave.warps), (x, y)
     for d, count, extent in zip(DIRECTIONS, counts, extents):
-        if tex[d] and fibre:
+        if d in tex and fibre:
             section = tex[d] / fibre * 1e-3  # mm2 of solid fibre
             length = count * extent * (1 + fabric.directions[d].crimp)
             alike = (v for name, v in consistency.yarn_volumes.items() if Body.named(name).direction is d)

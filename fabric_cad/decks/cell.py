@@ -43,12 +43,10 @@ def cell_keywords(mesh: Mesh, rings: int = 0) -> Iterator[Keyword]:
     for surface, quads in mesh.surfaces.items():
         yield NodeSet(surface.name, np.unique(quads) + 1)
 
-    for surface, (elements, sides) in element_faces(mesh).items():
-        if len(elements):
-            yield Surface(surface.name, elements + 1, sides + 1)
-    for name, (elements, sides) in touching_faces(mesh, rings).items():
-        if len(elements):
-            yield Surface(name, elements + 1, sides + 1)
+    named = {surface.name: faces for surface, faces in element_faces(mesh).items()}
+    for name, faces in (named | touching_faces(mesh, rings)).items():
+        if len(faces):
+            yield Surface(name, faces.elements + 1, faces.sides + 1)
     yield FibreOrientation(ORIENTATION, _axes(mesh))
 
 

@@ -110,7 +110,7 @@ def _material(mesh: Mesh, law: EngineeringConstants, hardening: float) -> Iterat
 
 def _touching_pairs(mesh: Mesh) -> list[tuple[str, str]]:
     """Slave and master surface of every contact there is."""
-    present = {name for name, (elements, _) in touching_faces(mesh).items() if len(elements)}
+    present = {name for name, faces in touching_faces(mesh).items() if len(faces)}
     return [pair for pair in _PAIRS if present.issuperset(pair)]
 
 
@@ -129,7 +129,7 @@ def periodic_equations(mesh: Mesh, lattice: Lattice, reference: dict[Direction, 
     for yarn in mesh.yarns:
         shift = lattice.vectors[yarn.direction.axis]
         starts, ends = mesh.nodes_of(yarn, SurfaceKind.START), mesh.nodes_of(yarn, SurfaceKind.END)
-        distance, partner = cKDTree(mesh.points[ends]).query(mesh.points[starts] + shift)
+        distance, partner = map(np.asarray, cKDTree(mesh.points[ends]).query(mesh.points[starts] + shift))
         if len(starts) != len(ends) or distance.max() > _PLACE or len(np.unique(partner)) != len(ends):
             raise BuildError(f"{yarn}: the nodes of its two ends do not match")
         for start, end in zip((starts + 1).tolist(), (ends[partner] + 1).tolist()):

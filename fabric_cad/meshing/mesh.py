@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..weave.bodies import Body, BodyKind, Surface, SurfaceKind
+from ..weave.bodies import Body, Surface, SurfaceKind, YarnBody
 from .hexahedron import LENGTHWISE
 
 
@@ -30,9 +30,9 @@ class Mesh:
     other_elements: int = 0
 
     @property
-    def yarns(self) -> tuple[Body, ...]:
+    def yarns(self) -> tuple[YarnBody, ...]:
         """The bodies that are yarns, in the order of :attr:`bodies`."""
-        return tuple(body for body in self.bodies if body.kind is BodyKind.YARN)
+        return tuple(body for body in self.bodies if isinstance(body, YarnBody))
 
     def elements_of(self, body: Body) -> np.ndarray:
         """Indices (elements,) of a body's hexahedra."""
@@ -87,7 +87,7 @@ class Mesh:
 
     def _on_yarns(self, vectors: np.ndarray) -> np.ndarray:
         """Vectors (elements, 3), those of elements of other bodies set to 0."""
-        is_yarn = np.array([body.kind is BodyKind.YARN for body in self.bodies])
+        is_yarn = np.array([isinstance(body, YarnBody) for body in self.bodies])
         return vectors if is_yarn.all() else np.where(is_yarn[self.body, None], vectors, 0.0)
 
 

@@ -24,35 +24,49 @@ class BodyKind(StrEnum):
 
 @dataclass(frozen=True)
 class Body:
-    """One body of a cell; a yarn has a direction and an index from 0 within it, any other has neither."""
+    """One body of a cell; a yarn (:class:`YarnBody`) has a direction and an index, any other has neither."""
 
     kind: BodyKind
     direction: Direction | None = None
     index: int | None = None
 
     def __post_init__(self) -> None:
-        is_yarn = self.kind is BodyKind.YARN
-        if is_yarn != (self.direction is not None) or is_yarn != (self.index is not None):
+        is_yarn = isinstance(self, YarnBody)
+        if is_yarn != (self.kind is BodyKind.YARN) or is_yarn != (self.direction is not None):
             raise ValueError("a yarn has a direction and an index, any other body has neither")
 
-    @classmethod
-    def yarn(cls, direction: Direction, index: int) -> Body:
+    @staticmethod
+    def yarn(direction: Direction, index: int) -> YarnBody:
         """The yarn with that index (from 0) of a direction."""
-        return cls(BodyKind.YARN, direction, index)
+        return YarnBody(BodyKind.YARN, direction, index)
 
-    @classmethod
-    def named(cls, name: str) -> Body:
+    @staticmethod
+    def named(name: str) -> Body:
         """The body that a file calls so. Raises ValueError for a name that is none."""
         if match := _YARN.fullmatch(name):
-            return cls.yarn(Direction(match[1]), int(match[2]) - 1)
-        return cls(BodyKind(name))
+            return Body.yarn(Direction(match[1]), int(match[2]) - 1)
+        return Body(BodyKind(name))
 
     @property
     def name(self) -> str:
         """What files call it: ``weft_1``, ``warp_3``, ``matrix``."""
-        if self.kind is BodyKind.YARN:
-            return f"{self.direction}_{self.index + 1}"
         return str(self.kind)
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@dataclass(frozen=True)
+class YarnBody(Body):
+    """A yarn of a cell: its direction, and its index from 0 among the yarns of it."""
+
+    direction: Direction
+    index: int
+
+    @property
+    def name(self) -> str:
+        """What files call it: ``weft_1``, ``warp_3``."""
+        return f"{self.direction}_{self.index + 1}"
 
     def __str__(self) -> str:
         return self.name

@@ -9,7 +9,7 @@ from math import gcd
 
 import numpy as np
 
-from .bodies import Body
+from .bodies import Body, YarnBody
 from .directions import Direction
 
 FAMILIES = ("plain", "twill", "satin", "pattern")
@@ -156,7 +156,7 @@ class Yarn:
     turns_right: tuple[bool, ...]
 
     @property
-    def body(self) -> Body:
+    def body(self) -> YarnBody:
         """What it is in a cell; yarns of one direction are numbered by ``index``, from 0."""
         return Body.yarn(self.direction, self.index)
 

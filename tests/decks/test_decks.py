@@ -62,8 +62,8 @@ def test_golden_text(two_yarns, dialect, tmp_path, request):
 
 def test_every_quadrilateral_is_the_named_face_of_its_element(two_yarns):
     corners = [(1, 2, 3, 4), (5, 8, 7, 6), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 8, 4), (4, 8, 5, 1)]  # of C3D8, S1 ... S6
-    for name, (elements, sides) in element_faces(two_yarns).items():
-        found = [{int(two_yarns.hexahedra[e, k - 1]) for k in corners[s]} for e, s in zip(elements, sides)]
+    for name, faces in element_faces(two_yarns).items():
+        found = [{int(two_yarns.hexahedra[e, k - 1]) for k in corners[s]} for e, s in zip(faces.elements, faces.sides)]
         assert sorted(map(sorted, found)) == sorted(sorted(quad) for quad in two_yarns.surfaces[name].tolist())
 
 
@@ -171,5 +171,5 @@ def test_rings_widen_the_patches_on_their_own_side():
     mesh.surfaces[FREE] = np.vstack([yarn.surfaces[FREE], bottom[outside]])
     for rings, faces in ((0, 2 * 2), (1, 4 * 4), (2, 6 * 6), (9, 8 * 6)):
         found = touching_faces(mesh, rings)
-        assert len(found["weft_bottom"][0]) == faces
-        assert len(found["weft_top"][0]) == len(found["warp_top"][0]) == 0
+        assert len(found["weft_bottom"]) == faces
+        assert len(found["weft_top"]) == len(found["warp_top"]) == 0
