@@ -31,7 +31,7 @@ def test_a_row_has_its_own_values(tmp_path):
     plain, thick = read(tmp_path, text), read(tmp_path, text, "thick")
     assert (plain.yarn.E1_MPa, thick.yarn.E1_MPa) == (1000, 1000)
     assert (plain.yarn.E2_MPa, thick.yarn.E2_MPa) == (70, 5)
-    assert thick.tension.ratios == (math.inf, 3.0)
+    assert thick.case("tension").ratios == (math.inf, 3.0)
 
 
 @pytest.mark.parametrize(

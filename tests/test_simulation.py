@@ -19,13 +19,15 @@ from fabric_cad.decks.keywords import Boundary, Compaction, EngineeringConstants
 from fabric_cad.decks.model import Load, Touch, model_keywords
 from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.simulation.energy import cell_energy
-from fabric_cad.simulation.job import Solver, at_rest, run_job, transverse_strains, write_model
+from fabric_cad.simulation.job import Solver, run_job, write_model
+from fabric_cad.simulation.laws import YarnLaw
+from fabric_cad.simulation.loads.shear import moment
+from fabric_cad.simulation.loads.tension import curves
 from fabric_cad.simulation.penetration import penetration
+from fabric_cad.simulation.reached import at_rest, transverse_strains
 from fabric_cad.simulation.results import read_dat
-from fabric_cad.simulation.settings import YarnLaw, read_settings
-from fabric_cad.simulation.shear import cell_vectors, moment, shear_loads
+from fabric_cad.simulation.settings import read_settings
 from fabric_cad.simulation.solver import find_solver
-from fabric_cad.simulation.tension import curves, paths, tension_loads
 from fabric_cad.study.units import Work, run_unit
 from fabric_cad.weave.bodies import SurfaceKind
 from fabric_cad.weave.lattice import Lattice
@@ -42,6 +44,7 @@ PLAIN42 = {
     "lateral_height_mm": 0.03714,
 }
 PERIOD = (8.4, 8.4)
+LATTICE = Lattice.axis_parallel(*PERIOD)
 
 
 def solver(**options):
@@ -63,7 +66,7 @@ def meshed(folder, **options):
 def run(folder, mesh, loads, settings=None, name="job", at_once=False):
     """A job whose loads are all reached, without a warning of the solver's."""
     deck = folder / f"{name}.inp"
-    write_model(deck, mesh, Lattice.axis_parallel(*PERIOD), settings or read_settings(FAMILIES, "plain42"), loads, name)
+    write_model(deck, mesh, LATTICE, settings or read_settings(FAMILIES, "plain42"), loads, name)
     asked = "*CONTACT PRINT, TOTALS=ONLY, FREQUENCY=9999\nCELS\n*END STEP" * ("CONTACT PAIR" in deck.read_text())
     deck.write_text(deck.read_text().replace("*END STEP", asked or "*END STEP"))
     if at_once:
@@ -73,6 +76,12 @@ def run(folder, mesh, loads, settings=None, name="job", at_once=False):
     assert job.run.warnings == ()
     assert len(job.reached) == len(loads)
     return job.reached
+
+
+def stretched(*states):
+    """Loads of biaxial tension by (E11, E22)."""
+    case = read_settings(FAMILIES, "plain42").case("tension")
+    return tuple(case.load(state, LATTICE) for state in states)
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +100,7 @@ def mesh(folder):
 def reached(folder, mesh):
     """States of PLAIN42 by (E11, E22) in thousandths: k = 1 upwards, then k = 0 downwards."""
     states = [(1, 1), (2, 2), (3, 3), (4, 0), (4, 4), (4, 2), (3, 0), (2, 0), (1, 0)]
-    loads = tension_loads(PERIOD, tuple((weft / 1000, warp / 1000) for weft, warp in states))
+    loads = stretched(*((weft / 1000, warp / 1000) for weft, warp in states))
     return dict(zip(states, run(folder, mesh, loads, name="tension")))
 
 
@@ -126,7 +135,7 @@ def test_yarns_in_contact_hardly_penetrate(reached, mesh):
     thickness = 0.3714
     state = reached[4, 4]
     assert 0 < state.overclosure < 0.003 * thickness
-    depth = penetration(mesh, mesh.points + state.displacement, 1.004 * cell_vectors(PERIOD, 0.0)).depth
+    depth = penetration(mesh, mesh.points + state.displacement, 1.004 * LATTICE.vectors).depth
     assert depth < 0.003 * thickness
     assert 0.9 < state.share <= 1
     through = transverse_strains(mesh, state.strain)[1]
@@ -155,7 +164,7 @@ def test_the_work_of_the_forces_is_the_energy_stored(folder, reached, mesh):
 def test_tension_converges_with_the_mesh(folder, mesh, reached):
     found = []
     for options in ({"across": 4, "gap": 2}, {"across": 12}):
-        (state,) = run(folder, meshed(folder, **options), tension_loads(PERIOD, ((0.004, 0.004),)), name="finer")
+        (state,) = run(folder, meshed(folder, **options), stretched((0.004, 0.004)), name="finer")
         found.append(tensions(state)[0])
     coarse, fine = found
     middle = tensions(reached[4, 4])[0]
@@ -178,8 +187,11 @@ def test_the_work_of_shear_is_the_energy_stored(folder, mesh):
     text = "[shear]\nangle_deg = 4.0\npoints = 4\n"
     (folder / "simulation.toml").write_text(text)
     settings = read_settings(folder, "plain42")
-    states = run(folder, mesh, shear_loads(PERIOD, settings.shear), settings, name="shear")
-    couples = [0.0] + [moment(PERIOD, angle, 0.0, state.forces) for angle, state in zip((1, 2, 3, 4), states)]
+    case = settings.case("shear")
+    (path,) = case.paths(settings.contact)
+    assert path == (1, 2, 3, 4)
+    states = run(folder, mesh, tuple(case.load(angle, LATTICE) for angle in path), settings, name="shear")
+    couples = [0.0] + [moment(LATTICE.vectors, angle, 0.0, state.forces) for angle, state in zip(path, states)]
     assert (np.diff(couples) > 0).all()
     stored = cell_energy(mesh, states[-1].displacement, settings.yarn).strain
     stored += contact_energy(folder, "shear", 4)
@@ -394,7 +406,7 @@ def test_a_unit_of_a_study_is_stretched(tmp_path):
 
 def test_tied_yarns_and_friction_run_too(folder, mesh):
     """Gluing and friction can only stiffen a cell."""
-    load = tension_loads(PERIOD, ((0.001, 0.0),))
+    load = stretched((0.001, 0.0))
     found = []
     for text in ("", "[contact]\nfriction = 0.3\n", "[contact]\nkind = 'tie'\n"):
         (folder / "simulation.toml").write_text(text)
@@ -407,10 +419,10 @@ def test_tied_yarns_and_friction_run_too(folder, mesh):
 
 def test_paths_go_through_every_state_asked_for():
     settings = read_settings(FAMILIES, "plain")
-    (path,) = paths(settings.tension, settings.contact)
+    (path,) = settings.case("tension").paths(settings.contact)
     assert len(path) == len({(round(weft, 9), round(warp, 9)) for weft, warp in path})
     near = {(round(weft, 9), round(warp, 9)) for weft, warp in path}
-    for curve in curves(settings.tension):
+    for curve in curves(settings.case("tension")):
         assert near.issuperset((round(weft, 9), round(warp, 9)) for weft, warp in curve.states)
     levels = [0.001 * at for at in range(5)]
     assert near.issuperset((round(a, 9), round(b, 9)) for a in levels for b in levels if a or b)

@@ -18,7 +18,7 @@ from fabric_cad.pictures.cell import window_size
 from fabric_cad.pictures.limits import limits_of
 from fabric_cad.pictures.scene import scale_bar
 from fabric_cad.pictures.skin import skin_of
-from fabric_cad.simulation.settings import YarnLaw
+from fabric_cad.simulation.laws import YarnLaw
 from fabric_cad.simulation.stress import yarn_stress
 from fabric_cad.weave.bodies import Body, Surface, SurfaceKind
 

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 from .. import __version__
 from ..support.errors import did_you_mean
-from .commands import COMMANDS
+from .commands import commands
 from .options import Command, Options
 from .terminal import complain, say
 
@@ -88,10 +88,10 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"fabric-cad {__version__}")
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    adder = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
 
-    for command in COMMANDS:
-        added = commands.add_parser(
+    for command in commands():
+        added = adder.add_parser(
             command.name,
             parents=[common],
             help=command.text,

@@ -51,6 +51,17 @@ class Load:
     weft: tuple[float, float, float]
     warp: tuple[float, float, float]
 
+    @classmethod
+    def of(cls, title: str, change: np.ndarray) -> Load:
+        """The state whose vectors have changed by ``change``, (2, 3) mm."""
+        weft, warp = (tuple(vector) for vector in change.tolist())
+        return cls(title, weft, warp)
+
+    @property
+    def change(self) -> np.ndarray:
+        """What the vectors change by, (2, 3) mm."""
+        return np.array([self.weft, self.warp])
+
 
 @dataclass(frozen=True)
 class Touch:

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from ..cell.pipeline import Stages, checked_report, make_mesh, make_step
+from ..cell.report import CellReport
 from ..measured.tables import Family
 from ..meshing.mesh import Mesh
 from ..meshing.options import MeshOptions, mesh_options
@@ -21,7 +22,7 @@ class Cell:
     fabric: SolvedFabric
     mesh: Mesh
     options: MeshOptions
-    report: dict
+    report: CellReport
 
 
 def loaded_cell(row: Family, settings: Settings, options: Mapping, folder: Path, stages: Stages) -> Cell:
@@ -34,4 +35,4 @@ def loaded_cell(row: Family, settings: Settings, options: Mapping, folder: Path,
     made = make_step(row, folder, stages)
     used = mesh_options(made.fabric, **asked)
     meshed = make_mesh(made, used, stages)
-    return Cell(made.fabric, meshed.mesh, used, checked_report(made, meshed, stages).content())
+    return Cell(made.fabric, meshed.mesh, used, checked_report(made, meshed, stages))

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..meshing.hexahedron import GAUSS_POINTS, shape_slopes
 from ..meshing.mesh import Mesh
-from .settings import YarnLaw
+from .laws import YarnLaw
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ mesh, loads --model--> <stem>.inp --ccx--> <stem>.frd, .dat, .log --readers--> J
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,13 +16,12 @@ from ..decks.keywords import EngineeringConstants, write_keywords
 from ..decks.model import Load, Touch, model_keywords
 from ..meshing.mesh import Mesh
 from ..support.cores import cores
-from ..weave.directions import DIRECTIONS, Direction
+from ..weave.directions import DIRECTIONS
 from ..weave.lattice import Lattice
-from .energy import cell_energy
-from .penetration import penetration
 from .progress import CaseProgress
+from .reached import Reached
 from .results import State, read_dat, read_frd
-from .settings import Settings, YarnLaw
+from .settings import Settings
 from .solver import Progress, Run, find_solver, run_solver
 
 _STRESS_FREE = 1e-6  # MPa: contact pressure above which a node counts as touching
@@ -39,31 +38,6 @@ class Solver:
     threads: int = field(default_factory=cores)
     time_limit: float = 3600.0
     listen: Callable[[CaseProgress], None] | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Reached:
-    """A load that was reached, or rest.
-
-    ``forces`` (2, 3) N: sum over the wefts' ends and over the warps' ends of what the neighbouring
-    cells pull with; ``displacement`` (nodes, 3) mm; ``strain`` (nodes, 6) Green's, axes xx, yy, zz,
-    xy, yz, zx; ``pressure`` (nodes,) MPa, NaN off the weft's contact surfaces; ``overclosure``
-    mm, the largest by which contact surfaces overlap, and ``share`` of the patches' area under
-    pressure, both NaN where yarns are tied.
-    """
-
-    forces: np.ndarray
-    displacement: np.ndarray
-    strain: np.ndarray
-    pressure: np.ndarray
-    overclosure: float
-    share: float
-
-
-def at_rest(mesh: Mesh) -> Reached:
-    """The cell before any load: nothing moved, nothing pressed."""
-    zero = np.zeros(len(mesh.points))
-    return Reached(np.zeros((2, 3)), np.zeros((len(zero), 3)), np.zeros((len(zero), 6)), zero, 0.0, np.nan)
 
 
 @dataclass(frozen=True)
@@ -142,49 +116,3 @@ def _patch_areas(mesh: Mesh) -> np.ndarray:
         quads = face_quads(mesh, patches[name])
         np.add.at(areas, quads, np.linalg.norm(area_vectors(mesh, quads), axis=1)[:, None] / 4)
     return areas
-
-
-def condition(mesh: Mesh, law: YarnLaw, reached: Reached, vectors: np.ndarray) -> dict[str, float]:
-    """What tells whether a state can be trusted; ``vectors`` (2, 3) mm of the deformed cell.
-
-    ``contact_penetration_mm`` between the contact surfaces and ``penetration_mm`` between any two yarns, measured
-    on their deformed shapes; ``contact_share`` of the patches; strain energy; the least volume ratio in an element.
-    """
-    energy = cell_energy(mesh, reached.displacement, law)
-    return {
-        "contact_penetration_mm": reached.overclosure,
-        "penetration_mm": penetration(mesh, mesh.points + reached.displacement, vectors).depth,
-        "contact_share": reached.share,
-        "strain_energy_N_mm": energy.strain,
-        "least_volume_ratio": energy.least_volume_ratio,
-    }
-
-
-def transverse_strains(mesh: Mesh, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Green's strain (nodes,) across and through the yarn, in the axes of the yarns before the load.
-
-    ``strain`` (nodes, 6) as in :class:`Reached`.
-    """
-    axes = np.zeros((2, len(mesh.points), 3))
-    fibre, across = mesh.fibre_axes(), mesh.across_axes()
-    for axis, values in zip(axes, (across, np.cross(fibre, across))):
-        np.add.at(axis, mesh.hexahedra, values[:, None, :])
-        axis /= np.linalg.norm(axis, axis=1)[:, None]
-    xx, yy, zz, xy, yz, zx = strain.T
-    tensor = np.moveaxis(np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]), 2, 0)
-    return tuple(np.einsum("ni,nij,nj->n", axis, tensor, axis) for axis in axes)
-
-
-def tension_per_yarn(mesh: Mesh, pulls: Sequence[float]) -> dict[str, float]:
-    """Columns ``T11_N_per_yarn`` and ``T22_N_per_yarn`` of what all wefts and all warps pull with, N."""
-    counts = [sum(yarn.direction is direction for yarn in mesh.yarns) for direction in DIRECTIONS]
-    return {f"{name}_N_per_yarn": pull / count for name, pull, count in zip(("T11", "T22"), pulls, counts)}
-
-
-def widths(mesh: Mesh, points: np.ndarray) -> tuple[float, float]:
-    """Mean width (mm) of the wefts and of the warps at deformed ``points`` (nodes, 3): their extent across."""
-    extents: dict[Direction, list[float]] = {direction: [] for direction in DIRECTIONS}
-    for yarn in mesh.yarns:
-        nodes = np.unique(mesh.hexahedra[mesh.elements_of(yarn)])
-        extents[yarn.direction].append(float(np.ptp(points[nodes, yarn.direction.other.axis])))
-    return tuple(float(np.mean(extents[name])) for name in DIRECTIONS)

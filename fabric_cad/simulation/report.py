@@ -1,152 +1,159 @@
-"""What a case of loads says: its table, its report, and a few lines of that for a person."""
+"""What a load case says: its report as a value, which is a dict when it is written."""
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from ..cell.pipeline import Stages
-from .cell import Cell
-from .job import Job
-from .settings import Settings
+from ..cell.traces import trace, write_traced
+from ..measured.tables import Family
+
+if TYPE_CHECKING:
+    from .case_run import CaseRun
+    from .case_table import CaseTable
+    from .job import Job
+
+
+@dataclass(frozen=True)
+class SolverReport:
+    """How the solver went through the jobs of a case.
+
+    ``states`` were reached, ``cutbacks`` are increments that failed and were tried again smaller.
+    """
+
+    version: str
+    finished: bool
+    reason: str
+    jobs: int
+    states: int
+    cutbacks: int
+    seconds: float
+    peak_memory_MB: float  # noqa: N815 (as in the file)
+    warnings: list[str]
+
+
+@dataclass(frozen=True)
+class ContactReport:
+    """How yarns touch, over all states; None where nothing is known, as of yarns that are glued."""
+
+    max_contact_penetration_mm: float | None
+    max_penetration_mm: float | None
+    valid_penetration_mm: float
+    states_beyond: int
+    min_contact_share: float | None
+    least_volume_ratio: float | None
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
-    """What tension and shear have in common: the row, its settings and cell, and how decks are run.
+class CaseReport:
+    """The report of a load case on one row.
 
-    ``kind`` is ``tension`` or ``shear``, the stem of every file; ``folder`` takes them.
+    ``case`` is its name; ``settings`` are the tables it took; ``consistency``, ``mesh`` and ``warnings`` those of the
+    cell; ``findings`` what this case alone has; ``seconds`` by stage; ``origin`` what made it; ``files``
+    the digests of all others, by name.
     """
 
-    kind: str
-    cell: Cell
-    settings: Settings
-    folder: Path
-    stages: Stages
+    row: str
+    case: str
+    settings: Mapping[str, Any]
+    consistency: Mapping[str, Any]
+    mesh: Mapping[str, Any]
+    warnings: Sequence[str]
+    solver: SolverReport
+    contact: ContactReport
+    findings: Mapping[str, Any]
+    seconds: Mapping[str, float]
+    origin: Mapping[str, Any]
+    files: Mapping[str, str] = field(default_factory=dict)
 
-    @property
-    def penetration_bound(self) -> float:
-        """Penetration (mm) of yarns up to which a state is called valid."""
-        thickness = min(each.thickness for each in self.cell.fabric.directions.values())
-        return self.settings.contact.valid_penetration * thickness
+    def content(self) -> dict[str, Any]:
+        """The report as it is written."""
+        return {
+            "row": self.row,
+            "case": self.case,
+            "settings": dict(self.settings),
+            "consistency": self.consistency,
+            "mesh": self.mesh,
+            "warnings": self.warnings,
+            "solver": asdict(self.solver),
+            "contact": asdict(self.contact),
+            **self.findings,
+            "seconds": dict(self.seconds),
+            **self.origin,
+            **({"files": dict(self.files)} if self.files else {}),
+        }
 
-    def path(self, ending: str) -> Path:
-        """A file of this case, e.g. ``tension.csv`` or ``tension_curves.png``."""
-        return self.folder / f"{self.kind}{ending}"
-
-
-def case_report(case: Case, name: str, jobs: list[Job], rows: list[dict], found: dict) -> dict:
-    """The content of ``tension.json`` or ``shear.json``, but for where it comes from."""
-    reached = [each for job in jobs for each in job.reached]
-    settings = asdict(case.settings)
-    settings["yarn"]["compaction_strain"] = _finite(settings["yarn"]["compaction_strain"])
-    settings["tension"]["ratios"] = [_finite(ratio) for ratio in settings["tension"]["ratios"]]
-    return {
-        "row": name,
-        "case": case.kind,
-        "settings": {key: settings[key] for key in ("yarn", "contact", case.kind)},
-        "consistency": case.cell.report["consistency"],
-        "mesh": case.cell.report["mesh"],
-        "warnings": case.cell.report["warnings"],
-        "solver": {
-            "version": jobs[0].run.version,
-            "finished": jobs[-1].run.finished,
-            "reason": jobs[-1].run.reason,
-            "jobs": len(jobs),
-            "states": len(reached),
-            "cutbacks": sum(job.run.cutbacks for job in jobs),
-            "seconds": round(sum(job.run.seconds for job in jobs), 3),
-            "peak_memory_MB": round(max(job.run.peak_memory for job in jobs) / 1e6, 1),
-            "warnings": sorted({warning for job in jobs for warning in job.run.warnings}),
-        },
-        "contact": {
-            "max_contact_penetration_mm": _extreme(max, [each.overclosure for each in reached]),
-            "max_penetration_mm": _extreme(max, [row["penetration_mm"] for row in rows]),
-            "valid_penetration_mm": case.penetration_bound,
-            "states_beyond": sum(row["penetration_mm"] > case.penetration_bound for row in rows),
-            "min_contact_share": _extreme(min, [each.share for each in reached]),
-            "least_volume_ratio": _extreme(min, [row["least_volume_ratio"] for row in rows]),
-        },
-        **found,
-        "seconds": {key: round(value, 4) for key, value in case.stages.seconds.items()},
-    }
+    def written(self, path: Path) -> CaseReport:
+        """Write the report; it, with the digests of the files beside."""
+        content = self.content()
+        write_traced(content, path)
+        return replace(self, files=content["files"])
 
 
-def _finite(value: float) -> float | str:
-    """Infinity as text, for JSON has none."""
-    return "inf" if math.isinf(value) else value
+def case_report(run: CaseRun, row: Family, jobs: Sequence[Job], table: CaseTable) -> CaseReport:
+    """The report of a case whose ``jobs`` gave a ``table``; ``row`` is a table of one row."""
+    cell, settings = run.cell.report.content(), run.settings
+    tables = {"yarn": settings.yarn, "contact": settings.contact, run.case.name: run.case}
+    return CaseReport(
+        row=row.names[0],
+        case=run.case.name,
+        settings={name: _finite(asdict(values)) for name, values in tables.items()},  # type: ignore[call-overload]
+        consistency=cell["consistency"],
+        mesh=cell["mesh"],
+        warnings=cell["warnings"],
+        solver=_solver_report(jobs),
+        contact=_contact_report(run, jobs, table),
+        findings=run.case.findings(run, table),
+        seconds={name: round(seconds, 4) for name, seconds in run.stages.seconds.items()},
+        origin=trace(row, run.cell.options),
+    )
 
 
-def _extreme(choose: Callable, values: list[float]) -> float | None:
+def _solver_report(jobs: Sequence[Job]) -> SolverReport:
+    runs = [job.run for job in jobs]
+    return SolverReport(
+        version=runs[0].version,
+        finished=runs[-1].finished,
+        reason=runs[-1].reason,
+        jobs=len(runs),
+        states=sum(len(job.reached) for job in jobs),
+        cutbacks=sum(run.cutbacks for run in runs),
+        seconds=round(sum(run.seconds for run in runs), 3),
+        peak_memory_MB=round(max(run.peak_memory for run in runs) / 1e6, 1),
+        warnings=sorted({warning for run in runs for warning in run.warnings}),
+    )
+
+
+def _contact_report(run: CaseRun, jobs: Sequence[Job], table: CaseTable) -> ContactReport:
+    reached = [state for job in jobs for state in job.reached]
+    depths = [row["penetration_mm"] for row in table.rows]
+    return ContactReport(
+        max_contact_penetration_mm=_extreme(max, (state.overclosure for state in reached)),
+        max_penetration_mm=_extreme(max, depths),
+        valid_penetration_mm=run.penetration_bound,
+        states_beyond=sum(depth > run.penetration_bound for depth in depths),
+        min_contact_share=_extreme(min, (state.share for state in reached)),
+        least_volume_ratio=_extreme(min, (row["least_volume_ratio"] for row in table.rows)),
+    )
+
+
+def _extreme(choose: Callable[[list[float]], float], values: Iterable[float]) -> float | None:
     known = [value for value in values if not math.isnan(value)]
     return choose(known) if known else None
 
 
-def write_rows(path: Path, rows: list[dict]) -> None:
-    """Rows as CSV; an empty cell where there is no number."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        if rows:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(rows[0])
-            writer.writerows([[_cell_text(value) for value in row.values()] for row in rows])
+def plain(row: Mapping[str, float]) -> dict[str, float | str | None]:
+    """A line of a table for JSON, which knows neither infinity nor NaN."""
+    return {name: None if math.isnan(value) else _finite(float(value)) for name, value in row.items()}
 
 
-def _cell_text(value: float) -> str:
-    return "" if math.isnan(value) else f"{value:.9g}"
-
-
-def plain(row: dict[str, float]) -> dict:
-    """A row for JSON, which knows neither infinity nor NaN."""
-    return {key: None if math.isnan(value) else _finite(float(value)) for key, value in row.items()}
-
-
-def summary(report: Mapping) -> str:
-    """Text of a report of :func:`fabric_cad.simulation.run.make_tension` or ``make_shear``."""
-    mesh, solver, contact = report["mesh"], report["solver"], report["contact"]
-    lines = [
-        f"{report['row']}: {report['case']}, {mesh['hexahedra']} hexahedra, {solver['states']} states in "
-        f"{solver['jobs']} job{'s' * (solver['jobs'] != 1)} of CalculiX {solver['version']}, "
-        f"{solver['seconds']:.1f} s" + f", {solver['peak_memory_MB']:.0f} MB" * (solver["peak_memory_MB"] > 0)
-    ]
-    lines += _tension(report["largest"]) if report["case"] == "tension" else _shear(report)
-    if contact["max_contact_penetration_mm"] is not None:
-        lines += [
-            f"  penetration     at most {contact['max_contact_penetration_mm']:.2e} mm between the contact surfaces, "
-            f"{contact['max_penetration_mm']:.2e} mm anywhere",
-            f"  contact         at least {100 * contact['min_contact_share']:.0f} % of the patches under pressure",
-        ]
-    if contact["states_beyond"]:
-        lines.append(
-            f"  NOT VALID       {contact['states_beyond']} states: their yarns penetrate by more than "
-            f"{contact['valid_penetration_mm']:.2g} mm"
-        )
-    lines.append(f"  seconds         {sum(report['seconds'].values()):.1f}")
-    return "\n".join(lines)
-
-
-def _tension(states: list[Mapping]) -> list[str]:
-    """The end of every curve."""
-    lines = [f"  {'k':>6}{'E11 %':>9}{'E22 %':>9}{'T11 N per yarn':>16}{'T22 N per yarn':>16}{'thickness %':>13}"]
-    for at in states:
-        lines.append(
-            f"  {at['k']!s:>6}{100 * at['E11']:9.3g}{100 * at['E22']:9.3g}{at['T11_N_per_yarn']:16.5g}"
-            f"{at['T22_N_per_yarn']:16.5g}{at['thickness_change_percent']:+13.2f}"
-        )
-    return lines
-
-
-def _shear(report: Mapping) -> list[str]:
-    last = report["largest"]
-    lines = [
-        f"  at {last['angle_deg']:g} degrees   moment {last['moment_N_mm']:.4g} N mm a cell, "
-        f"force {last['force_N_per_mm']:.4g} N/mm"
-    ]
-    until = "up to" if report["contact"]["states_beyond"] else "at least up to"
-    lines.append(
-        f"  contact valid   {until} {report['valid_up_to_deg']:.3g} degrees "
-        f"(penetration within {report['contact']['valid_penetration_mm']:.2g} mm)"
-    )
-    return lines
+def _finite(value: Any) -> Any:
+    """Infinity as text, for JSON has none, also within lists and tables."""
+    if isinstance(value, dict):
+        return {name: _finite(inner) for name, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(inner) for inner in value]
+    return "inf" if isinstance(value, float) and math.isinf(value) else value

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..meshing.mesh import Mesh
 from .energy import gauss_points
-from .settings import YarnLaw
+from .laws import YarnLaw
 
 COMPONENTS = {
     "fibre": (0, 0),

@@ -11,6 +11,7 @@ from ..cell.pipeline import find_row
 from ..measured.columns import CHOICES, MEASURED, OTHER_UNITS, WEAVE_COLUMNS, is_safe_name, kept_column
 from ..measured.family import Family
 from ..measured.rules import bound_fault
+from ..simulation.loads import load_cases
 from ..simulation.settings import Settings, read_settings
 from ..support.errors import InputError, Problem, did_you_mean, quoted
 from ..support.toml_files import read_toml
@@ -19,7 +20,7 @@ from .design import DESIGNS, RANDOM
 from .factors import Factor, Normal, Uniform, Values
 from .names import figure_fault
 from .rows import base_value, weave_cells
-from .units import DEPTHS, Work
+from .units import Work, depths
 
 _MESH = {"size": float, "across": int, "crossing": int, "through": int, "gap": int}
 _FACTOR_KEYS = {"uniform": ("from", "to", "steps"), "normal": ("mean", "std")}
@@ -121,7 +122,7 @@ class _Reader:
             self.wrong(
                 f"{quoted(self.path.stem)} cannot name a folder of results; letters, digits, '_' and '-' only", ""
             )
-        for key, known in (("design", DESIGNS), ("depth", DEPTHS)):
+        for key, known in (("design", DESIGNS), ("depth", depths())):
             if key in found and found[key] not in known:
                 hint = did_you_mean(found[key], known, cutoff=0.3)
                 self.wrong(f"{quoted(found.pop(key))} is none of {', '.join(known)}{hint}", key)
@@ -143,7 +144,7 @@ class _Reader:
         if base is not None and not self.problems:
             self.check_size(factors, design, found.get("samples", 0))
         settings = None
-        if depth == "tension" and base is not None:
+        if depth in load_cases() and base is not None:
             settings = read_settings(families, base.names[0])
         if base is not None and ("depth" in found or "depth" not in self.content):
             self.check_figures(figures, depth, settings)

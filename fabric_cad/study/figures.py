@@ -12,10 +12,11 @@ from ..model.closing import CLOSING
 from ..model.identification import Identified
 from ..model.plausibility import DENSEST, implausible, overfull_yarns
 from ..model.solved import point_columns
+from ..simulation.loads import load_cases
 from ..weave.directions import DIRECTIONS
 from ..yarn.volumes import yarn_volumes
 
-HEADLINE = (
+_HEADLINE = (
     "identified.fabric_thickness_mm",
     "identified.weft.crimp",
     "identified.warp.crimp",
@@ -26,10 +27,13 @@ HEADLINE = (
     "volumes.weft_fibre_fraction",
     "volumes.warp_fibre_fraction",
     "mesh.min_scaled_jacobian",
-    "tension.k=0.T11_N_per_yarn",
-    "tension.k=1.T11_N_per_yarn",
 )
-"""Figures whose sensitivity is computed where a study names none."""
+
+
+def headline() -> tuple[str, ...]:
+    """Figures whose sensitivity is computed where a study names none."""
+    loaded = [f"{name}.{figure}" for name, case in load_cases().items() for figure in case.headline]
+    return (*_HEADLINE, *loaded)
 
 
 def flat(report: Mapping) -> dict[str, object]:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 from ..model.closing import CLOSING
 from ..model.solved import point_columns
+from ..simulation.loads import load_cases
+from ..simulation.report import ContactReport
 from ..simulation.settings import Settings
 from ..support.errors import did_you_mean, quoted
 from ..weave.directions import DIRECTIONS
@@ -36,34 +40,10 @@ _MESH = (
     "end_nodes",
     "matching_end_nodes",
 )
-_SIZES = ("thickness", "weft_width", "warp_width")
-_STATE = (
-    "E11",
-    "E22",
-    "T11_N_per_yarn",
-    "T22_N_per_yarn",
-    "T11_N_per_mm",
-    "T22_N_per_mm",
-    *(f"{size}_mm" for size in _SIZES),
-    *(f"{size}_change_percent" for size in _SIZES),
-    "contact_penetration_mm",
-    "penetration_mm",
-    "contact_share",
-    "strain_energy_N_mm",
-    "least_volume_ratio",
-)
-_CONTACT = (
-    "max_contact_penetration_mm",
-    "max_penetration_mm",
-    "valid_penetration_mm",
-    "states_beyond",
-    "min_contact_share",
-    "least_volume_ratio",
-)
 
 
 def figure_names(depth: str, settings: Settings | None = None) -> tuple[str, ...]:
-    """Every figure, a number, that a study of a depth may have; ``settings`` tell the curves of depth tension.
+    """Every figure, a number, that a study of a depth may have; ``settings`` tell those of a load case.
 
     Not every fabric has all of them (an areal density needs linear densities).
     """
@@ -79,12 +59,12 @@ def figure_names(depth: str, settings: Settings | None = None) -> tuple[str, ...
 
     if depth != "identify":
         names += [f"consistency.{name}" for name in _CONSISTENCY]
-    if depth in ("mesh", "tension"):
+    if depth not in ("identify", "cell"):
         names += [f"mesh.{name}" for name in _MESH]
-    if depth == "tension":
-        names += [f"tension.{name}" for name in _CONTACT]
-        ratios = settings.tension.ratios if settings is not None else ()
-        names += [f"tension.k={ratio:g}.{name}" for ratio in ratios for name in _STATE]
+    if depth in load_cases():
+        known = settings.case(depth).figure_names() if settings is not None else ()
+        contact = [field.name for field in fields(ContactReport)]
+        names += [f"{depth}.{name}" for name in (*contact, *known)]
     return tuple(names)
 
 
@@ -94,8 +74,11 @@ def figure_fault(name: str, depth: str, settings: Settings | None = None) -> str
     if name in known:
         return None
     deeper = next((more for more in ("cell", "mesh") if name in figure_names(more)), None)
-    if deeper or name.startswith("tension.k=") and depth != "tension":
-        return f"{quoted(name)} is a figure of depth {deeper or 'tension'}, this study is of depth {depth}"
+    case = name.partition(".")[0]
+    if case != depth and case in load_cases() and load_cases()[case].is_studied:
+        deeper = case
+    if deeper:
+        return f"{quoted(name)} is a figure of depth {deeper}, this study is of depth {depth}"
 
     hint = did_you_mean(name, known, 0.5) or f"; there are {', '.join(known[-12:])} and others, as in table.csv"
     return f"{quoted(name)} is no figure of depth {depth}{hint}"

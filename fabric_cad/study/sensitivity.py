@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from .design import Samples
-from .figures import HEADLINE
+from .figures import headline
 
 RESAMPLES = 200
 """Bootstrap resamples behind the intervals of Sobol indices."""
@@ -32,10 +32,10 @@ def sensitivities(
 ) -> list[Row]:
     """One row a figure and factor; figures are columns of shape (units,), NaN where a unit has none.
 
-    Those ``asked`` for, else those of :data:`~fabric_cad.study.figures.HEADLINE`; one that does not vary has no row.
+    Those ``asked`` for, else those of :func:`~fabric_cad.study.figures.headline`; one that does not vary has no row.
     """
     rows: list[Row] = []
-    for name in asked or HEADLINE:
+    for name in asked or headline():
         values = _numbers(figures.get(name, [None]))
         if _vary(values):
             rows += [{"figure": name, **row} for row in METHODS[design](samples, values)]

@@ -17,6 +17,7 @@ from pathlib import Path
 from ..cell.pipeline import Stages, checked_report, make_mesh, make_step, write_report
 from ..cell.traces import trace
 from ..measured.tables import Family
+from ..simulation.loads import load_cases
 from ..simulation.settings import Settings
 from ..support.errors import FabricCadError, InputError, SolverError
 from ..support.staging import output_errors, staged
@@ -61,28 +62,32 @@ def _mesh(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
     return report.content() | {"options": asdict(options)}
 
 
-def _tension(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
-    """The report of the cell that was loaded, and under ``tension`` the ends of curves: ``k=1.T11_N_per_yarn`` ..."""
+def _load(case: str, row: Family, work: Work, folder: Path, stages: Stages) -> dict:
+    """The report of the cell that was loaded, and the case's figures under its name: ``tension.k=1.T11_N_per_yarn``."""
     from ..simulation.job import Solver
     from ..simulation.run import run_case
 
-    solver = Solver(
-        threads=1, time_limit=0.8 * work.limit_seconds
-    )  # before the unit's own end, which ccx would survive
-    case, report = run_case("tension", row, work.settings, folder, solver, work.mesh, stages)
-    if not case["solver"]["finished"]:
-        raise SolverError(f"the solver {case['solver']['reason']}")
-    found = {f"k={float(at['k']):g}.{name}": at[name] for at in case["largest"] for name in at if name != "k"}
-    return report | {"tension": found | case["contact"], "options": case["options"]}
+    settings = work.settings
+    if settings is None:
+        raise ValueError(f"a unit of depth {case} needs materials and loads")
+
+    solver = Solver(threads=1, time_limit=0.8 * work.limit_seconds)  # before the unit's own end
+    report, cell = run_case(case, row, settings, folder, solver=solver, mesh=work.mesh, stages=stages)
+    if not report.solver.finished:
+        raise SolverError(f"the solver {report.solver.reason}")
+    figures = settings.case(case).figures(report.findings) | asdict(report.contact)
+    return cell.content() | {case: figures, "options": report.origin["options"]}
 
 
-DEPTHS: dict[str, Callable[[Family, Work, Path, Stages], dict] | None] = {
-    "identify": None,  # whole tables at once, see fabric_cad.study.run
-    "cell": _cell,
-    "mesh": _mesh,
-    "tension": _tension,
-}
-"""How far a study goes: from a row, what is done, a folder for files and a stopwatch to a report."""
+Depth = Callable[[Family, Work, Path, Stages], dict]
+"""From a row, what is done, a folder for files and a stopwatch to a report."""
+
+
+def depths() -> dict[str, Depth | None]:
+    """How far a study may go, in order; at ``identify`` whole tables at once, see :mod:`fabric_cad.study.run`."""
+    studied = [name for name, case in load_cases().items() if case.is_studied]
+    return {"identify": None, "cell": _cell, "mesh": _mesh} | {name: partial(_load, name) for name in studied}
+
 
 _ONE_AT_A_TIME = threading.Lock()
 """CadQuery and gmsh have one state a process: a worker of several threads runs one unit at a time."""
@@ -110,13 +115,20 @@ def _kept(row: Family, work: Work, keep: str | None, stages: Stages) -> dict:
     if keep is None:
         place = Path(tempfile.gettempdir())
         with output_errors(place), scratch_folder(place) as folder:
-            return DEPTHS[work.depth](row, work, folder, stages)
+            return _reported(row, work, folder, stages)
 
     traced: dict = {}
     with staged(Path(keep) / row.names[0], partial(write_report, traced)) as folder:
-        report = DEPTHS[work.depth](row, work, folder, stages)
+        report = _reported(row, work, folder, stages)
         traced |= trace(row, None) | report
         return report
+
+
+def _reported(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
+    depth = depths()[work.depth]
+    if depth is None:
+        raise ValueError(f"a unit is not run at depth {work.depth}")
+    return depth(row, work, folder, stages)
 
 
 def _memory() -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""The commands, one module each; a new one is a module here and its name in ``COMMANDS``."""
+"""The commands, one module each; a new one is a module here and its name in :func:`commands`."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ from typing import Any
 from ..options import Command
 from . import cell, init, listing, loads, show, solve, study, validate, wif
 
-COMMANDS: tuple[Command[Any], ...] = (
-    listing.COMMAND,
-    solve.COMMAND,
-    validate.COMMAND,
-    cell.COMMAND,
-    loads.TENSION,
-    loads.SHEAR,
-    study.COMMAND,
-    show.COMMAND,
-    wif.COMMAND,
-    init.COMMAND,
-)
-"""In the order in which the help tells of them."""
+
+def commands() -> tuple[Command[Any], ...]:
+    """Every command, in the order in which the help tells of them."""
+    return (
+        listing.COMMAND,
+        solve.COMMAND,
+        validate.COMMAND,
+        cell.COMMAND,
+        *loads.load_commands(),
+        study.COMMAND,
+        show.COMMAND,
+        wif.COMMAND,
+        init.COMMAND,
+    )

@@ -1,4 +1,4 @@
-"""``fabric-cad tension`` and ``fabric-cad shear``: the cell of rows under load, with CalculiX."""
+"""A command for every load case, such as ``fabric-cad tension``: the cell of rows under load, with CalculiX."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...simulation.loads import LoadCase, load_cases
 from ...support.numerals import number, whole
 from ..options import Command, MeshedRowOptions, declare_mesh, declare_rows
 from ..rows import find_row, work_on_rows
@@ -66,72 +67,47 @@ def _positive(kind: Callable[[str], float]) -> Callable[[str], float]:
     return read
 
 
-def run_tension(options: LoadOptions, voice: Voice) -> int:
-    """Stretch the cells of rows."""
-    from ...simulation.run import make_tension
+def load_command(case: type[LoadCase[Any]]) -> Command[LoadOptions]:
+    """The command of a load case, called as the case is."""
 
-    def work(name: str) -> None:
-        _load(name, "tension", make_tension, options, voice)
+    def run(options: LoadOptions, voice: Voice) -> int:
+        return work_on_rows(options, voice, lambda row: load(row, case.name, options, voice))
 
-    return work_on_rows(options, voice, work)
-
-
-def run_shear(options: LoadOptions, voice: Voice) -> int:
-    """Shear the cells of rows."""
-    from ...simulation.run import make_shear
-
-    def work(name: str) -> None:
-        _load(name, "shear", make_shear, options, voice)
-
-    return work_on_rows(options, voice, work)
+    text = f"{case.text}; materials and loads: FAMILIES/simulation.toml"
+    return Command(name=case.name, text=text, options=LoadOptions, run=run, declare=declare)
 
 
-Maker = Callable[..., dict[str, Any]]
-"""Runs a load case of a row; its report."""
-
-
-def _load(name: str, kind: str, make: Maker, options: LoadOptions, voice: Voice) -> None:
-    """Run a case of one row, or write its decks alone."""
+def load(name: str, case: str, options: LoadOptions, voice: Voice) -> None:
+    """Run a load case of one row, or write its decks alone."""
     from ...cell.pipeline import Stages
     from ...simulation.job import Solver
-    from ...simulation.report import summary
-    from ...simulation.run import write_case
+    from ...simulation.run import make_case, write_case
+    from ...simulation.settings import read_settings
     from ...simulation.solver import find_solver
+    from ...simulation.summary import summary
     from ...support.cores import cores
 
     row = find_row(name, options, voice)
-    how: dict[str, Any] = {"mesh": options.mesh, "stages": Stages(voice.stage)}
+    stages = Stages(voice.stage)
     if options.deck:
-        decks = write_case(kind, row, options.families, options.out, options.deck, **how)
+        settings = read_settings(options.families, name)
+        decks = write_case(case, row, settings, options.out, dialect=options.deck, mesh=options.mesh, stages=stages)
         voice.files(decks)
         return
 
-    threads = options.threads or cores()
-    solver = Solver(find_solver(options.ccx), threads, options.time_limit, voice.increment)
-    report = make(row, options.families, options.out, solver, **how)
-    voice.warn(report["warnings"])
+    solver = Solver(find_solver(options.ccx), options.threads or cores(), options.time_limit, voice.increment)
+    settings = read_settings(options.families, name)
+    report = make_case(case, row, settings, options.out, solver=solver, mesh=options.mesh, stages=stages)
+    voice.warn(report.warnings)
     if voice.quiet:
         return
 
-    voice.summary(summary(report))
-    files = sorted([*report["files"], f"{kind}.json"])
+    voice.summary(summary(report, settings.case(case)))
+    files = sorted([*report.files, f"{case}.json"])
     voice.files(Path(options.out) / name / file for file in files)
     voice.flush()
 
 
-_PLACE = "materials and loads: FAMILIES/simulation.toml"
-
-TENSION = Command(
-    name="tension",
-    text=f"stretch a row's cell biaxially with CalculiX: curves and surfaces of tension; {_PLACE}",
-    options=LoadOptions,
-    run=run_tension,
-    declare=declare,
-)
-SHEAR = Command(
-    name="shear",
-    text=f"shear a row's cell with CalculiX: moment and force against the angle; {_PLACE}",
-    options=LoadOptions,
-    run=run_shear,
-    declare=declare,
-)
+def load_commands() -> tuple[Command[Any], ...]:
+    """A command for every load case there is."""
+    return tuple(map(load_command, load_cases().values()))
