@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from fabric_cad.measured.columns import MEASURED, NUMBERS, WEAVE_COLUMNS
-from fabric_cad.measured.rules import bound_fault, out_of_bounds
+from fabric_cad.measured.relations import out_of_bounds
+from fabric_cad.measured.rules import bound_fault
 from fabric_cad.study.design import Samples
 from fabric_cad.study.rows import study_rows
 from fabric_cad.support.errors import InputError

@@ -11,7 +11,7 @@ from hypothesis import strategies as some
 from scipy.integrate import quad
 
 from fabric_cad.cell.pipeline import Stages, checked_report, make_step
-from fabric_cad.measured.rules import out_of_bounds
+from fabric_cad.measured.relations import out_of_bounds
 from fabric_cad.measured.tables import FLOAT_GAPS
 from fabric_cad.model.identification import identify, identify_rows
 from fabric_cad.study.design import DESIGNS, Samples

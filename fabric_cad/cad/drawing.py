@@ -12,7 +12,7 @@ from OCP.gp import gp_Pnt
 from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TColStd import TColStd_Array1OfReal
 
-from ..section.sections import Section
+from ..section.strips import Section
 from ..weave.directions import Direction
 from ..yarn.trajectory import Trajectory
 from .solids import knots_and_times

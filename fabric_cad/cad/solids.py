@@ -10,7 +10,7 @@ from OCP.gp import gp_Pnt
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
 
-from ..section.sections import Section
+from ..section.strips import Section
 from ..support.errors import BuildError
 from ..weave.directions import Direction
 from ..weave.lattice import AS_WOVEN, Lattice

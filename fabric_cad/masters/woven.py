@@ -20,7 +20,7 @@ from fabric_cad.cad.drawing import edge_of, planes_of, sweep_multisection, wire_
 from fabric_cad.cad.solids import sweep
 from fabric_cad.cad.step import Cell, assemble
 from fabric_cad.model.solved import SolvedFabric, read_solved
-from fabric_cad.section.sections import Section
+from fabric_cad.section.strips import Section
 from fabric_cad.support.errors import ArgumentError, InputError, Problem
 from fabric_cad.weave.bodies import Body
 from fabric_cad.weave.colours import colour_of as colour_of_body

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+from ..section.forms import FORMS
 from ..weave.directions import DIRECTIONS
 
 
@@ -96,17 +97,27 @@ OTHER_UNITS = {column.name: (column.kept, column.factor) for column in NUMBERS.v
 """Columns in other units: the column a quantity is kept in, and the factor to its unit."""
 
 FREE_TEXTS = ("source", "notes")
-SECTIONS = ("lenticular", "flat", "round")
+SECTIONS = FORMS.keys()
+"""The words of all section forms; that of rows which name none comes first."""
 
 FLOAT_GAPS = ("symmetric", "flat")
 """Sections between two crossings of one float: symmetric (Fig. 13b) or that of a flat contact (Fig. 13a)."""
 
-CHOICES = {"section": SECTIONS, "float_gap": FLOAT_GAPS, "thicker": DIRECTIONS}
+CHOICES: Mapping[str, Collection[str]] = {
+    "section": SECTIONS,
+    "float_gap": FLOAT_GAPS,
+    "thicker": DIRECTIONS,
+}
 """Columns of texts that are one of a few."""
 
 TEXTS = ("name", *CHOICES, *FREE_TEXTS)
 
-WEAVE_COLUMNS = {"plain": (), "twill": ("over", "under"), "satin": ("harness", "step"), "pattern": ("pattern",)}
+WEAVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
+    "plain": (),
+    "twill": ("over", "under"),
+    "satin": ("harness", "step"),
+    "pattern": ("pattern",),
+}
 """Columns of a family's weave: whole numbers, or the pattern as a text."""
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,79}")

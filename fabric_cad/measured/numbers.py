@@ -7,8 +7,9 @@ import numpy as np
 from .cells import measurement, with_point
 from .columns import MEASURED, NUMBERS, STD
 from .refusals import Step
+from .relations import relations
 from .row_values import RowValues
-from .rules import BOUNDS, RELATIONS, SCATTER
+from .rules import BOUNDS, SCATTER
 from .texts import TextRows
 
 
@@ -55,6 +56,6 @@ def check_relations(table: TextRows, rows: RowValues) -> None:
         for row, message in SCATTER[column].faults(with_scatter):
             table.refusals.add(row, Step.SCATTER, message, column)
 
-    for rule in RELATIONS:
+    for rule in relations():
         for row, message in rule.faults(rows):
             table.refusals.add(row, Step.RELATION, message, rule.column)

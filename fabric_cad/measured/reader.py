@@ -108,7 +108,7 @@ def _sound_rows(family: str, table: TextRows, rows: RowValues, weaves: Sequence[
         weaves=tuple(weave_of(family, weaves[row]) for row in kept),
         measured={column: rows.values[column][kept] for column in MEASURED},
         scatter={column: rows.values[std][kept] for column, std in zip(MEASURED, STD)},
-        sections=texts("section", SECTIONS[0]),
+        sections=texts("section", next(iter(SECTIONS))),
         float_gaps=texts("float_gap", FLOAT_GAPS[0]),
         thicker=texts("thicker"),
         sources=texts("source"),

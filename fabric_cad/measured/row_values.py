@@ -32,9 +32,9 @@ class RowValues:
             sections=table.sections,
         )
 
-    def is_section(self, section: str) -> np.ndarray:
-        """True where a row asks for that section."""
-        return np.array([named == section for named in self.sections], dtype=bool)
+    def is_section(self, *words: str) -> np.ndarray:
+        """True where a row asks for one of these sections."""
+        return np.array([named in words for named in self.sections], dtype=bool)
 
     def has(self, direction: str) -> np.ndarray:
         """True where a direction has cells of its own: the warp of a balanced row has none."""

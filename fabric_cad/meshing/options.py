@@ -12,6 +12,7 @@ from ..model.solved import SolvedFabric
 from ..support.errors import InputError, Problem
 from ..support.memory import available_memory
 from .count import hexahedra, needed_memory
+from .section_mesh import section_mesh
 
 MOST = 100_000
 """Most elements an option may ask for in one direction."""
@@ -51,7 +52,8 @@ class MeshOptions:
 
         ``instead`` names, for an option that follows from another, that other one to blame.
         """
-        self._check_section(fabric)
+        if fault := section_mesh(fabric.form).fault(self):
+            raise InputError(fault)
         needed, available = needed_memory(fabric, self), available_memory()
         if available is None or needed <= available:
             return
@@ -66,29 +68,6 @@ class MeshOptions:
                 column=blamed,
             )
         )
-
-    def _check_section(self, fabric: SolvedFabric) -> None:
-        if fabric.section == "round" and (self.through % 2 or self.through < 4):
-            raise InputError(
-                Problem(
-                    f"{self.through} is not an even number of at least 4, as a round section needs", column="through"
-                )
-            )
-        if fabric.section != "lenticular":
-            return
-        if self.through % 2:
-            raise InputError(
-                Problem(f"{self.through} is odd; a lenticular section has an even number of layers", column="through")
-            )
-        for name in ("across", "crossing"):
-            if getattr(self, name) < 2 * self.through:
-                raise InputError(
-                    Problem(
-                        f"{getattr(self, name)} is below {2 * self.through}, twice the {self.through} layers "
-                        "through the thickness, which the pointed edges of a lenticular section take",
-                        column=name,
-                    )
-                )
 
 
 _DEFAULTS = asdict(MeshOptions())
@@ -108,15 +87,16 @@ def mesh_options(
     pointed edges get three columns for every layer of ``through``, and that ``crossing``
     follows ``across``. Raises :class:`InputError`, also for a mesh that memory does not hold.
     """
-    default = MeshOptions(through=4) if fabric.section == "round" else MeshOptions()
+    mesh = section_mesh(fabric.form)
+    default = MeshOptions(through=mesh.usual_through)
     given = {"across": across, "crossing": crossing, "through": through, "gap": gap}
     given = {name: value for name, value in given.items() if value is not None}
     if size is not None:
         asked = MeshOptions(**(_sized(fabric, size, given) | given))
         asked.check(fabric, dict.fromkeys(_DEFAULTS.keys() - given.keys(), "size"))
         return asked
-    pointed = 3 * given.get("through", 0) if fabric.section == "lenticular" else 0
-    given.setdefault("across", max(default.across, pointed))
+
+    given.setdefault("across", max(default.across, mesh.usual_across(given.get("through", 0))))
     given.setdefault("crossing", given["across"])
     asked = replace(default, **given)
     asked.check(fabric)
@@ -133,13 +113,11 @@ def _sized(fabric: SolvedFabric, size: float, given: Mapping[str, int]) -> dict[
             raise InputError(Problem(f"{size:g} makes more than {MOST} elements of {length:.4g} mm", column="size"))
         return ceil(length / size)
 
-    pointed, rounded = fabric.section == "lenticular", fabric.section == "round"
-    through = given.get("through")
+    mesh, through = section_mesh(fabric.form), given.get("through")
     if through is None:
-        through = parts(max(fabric.weft.thickness, fabric.warp.thickness))
-        through += through % 2 if pointed or rounded else 0
-        through = max(through, 4) if rounded else through
-    least = 2 * through if pointed else 2
+        through = mesh.layers(parts(max(fabric.weft.thickness, fabric.warp.thickness)))
+    least = mesh.least_across(through)
+
     spare = [fabric.directions[d].crossed_spacing - fabric.crossed(d).width for d in ("weft", "warp")]
     return {
         "across": max(least, parts(fabric.weft.width)),

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..section.sections import Section, Strip
+from ..section.strips import Section, Strip
 from .smoothing import smoothed
 from .templates import Template, block_modes, round_template, worst_corner
 

@@ -22,6 +22,8 @@ CLOSING = ("weft_crimp", "warp_crimp", "weft_thickness_mm", "warp_thickness_mm",
 ROUNDING = 1e-9
 """What is thinner than this, as a share of the fabric, is rounding and not a difference."""
 
+_NAMES = ("A1", "A2", "b1", "b2")
+
 
 @dataclass(frozen=True)
 class Closed:
@@ -39,7 +41,12 @@ class Closed:
 
     def where(self, mask: np.ndarray, other: Closed) -> Closed:
         """This solution where ``mask``, the other elsewhere."""
-        return Closed(*(np.where(mask, getattr(self, name), getattr(other, name)) for name in ("A1", "A2", "b1", "b2")))
+        return Closed(*(np.where(mask, getattr(self, name), getattr(other, name)) for name in _NAMES))
+
+    def put(self, rows: np.ndarray, other: Closed) -> None:
+        """Write the solution of some rows, by their numbers, into the arrays of this one."""
+        for name in _NAMES:
+            getattr(self, name)[rows] = getattr(other, name)
 
 
 # One rule for each three of {A1, A2, b1, b2, w}: all solutions of the two relations. Where the

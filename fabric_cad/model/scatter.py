@@ -17,8 +17,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..measured.family import Family
+from ..measured.relations import SPACING
 from ..measured.row_values import RowValues
-from ..measured.rules import BOUNDS, SPACING, Rule
+from ..measured.rules import BOUNDS, Rule
 from ..support.errors import InputError, Problem, expect
 from ..weave.directions import DIRECTIONS
 from .identification import identify

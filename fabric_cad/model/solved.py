@@ -25,7 +25,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..measured.columns import FLOAT_GAPS
-from ..section.sections import KINDS, ContactSide, Frame, FreeSide
+from ..section.forms import FORMS, Form
+from ..section.frame import KINDS, ContactSide, Frame, FreeSide, Split
 from ..support.errors import ArgumentError, InputError, Problem, UnknownRowError, did_you_mean
 from ..support.numerals import number as number_of
 from ..support.numerals import whole
@@ -100,14 +101,18 @@ class SolvedFabric:
         """The other direction: that of the yarns which ``direction`` crosses."""
         return self.warp if direction == "weft" else self.weft
 
+    @property
+    def form(self) -> Form:
+        """The form of its sections."""
+        return FORMS[self.section]
+
     def frame(self, direction: str) -> Frame:
         """What all sections of a direction share."""
         solved = self.directions[direction]
-        splits = {
-            side: (solved.contact[plateau].half_chord, solved.contact[plateau].offset)
-            for side, plateau in (("bottom", "high"), ("top", "low"))
-        }
-        return Frame(solved.width, solved.thickness, self.section, self.lateral_height, splits)
+        bottom, top = (
+            Split(solved.contact[plateau].half_chord, solved.contact[plateau].offset) for plateau in ("high", "low")
+        )
+        return Frame(solved.width, solved.thickness, self.form, self.lateral_height, bottom, top)
 
     @property
     def period(self) -> tuple[float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..measured.columns import MEASURED, WEAVE_COLUMNS, kept_column
 from ..measured.family import Family
-from ..measured.rules import out_of_bounds
+from ..measured.relations import out_of_bounds
 from ..support.errors import Problem
 from ..weave.faults import weave_fault
 from ..weave.patterns import read_pattern, written

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..model.solved import SolvedFabric
-from ..section.sections import Section
 from ..section.splines import Spline
+from ..section.strips import Section
 from .swept import swept_yarns
 
 _SAMPLES = 257
@@ -43,9 +43,7 @@ _PLACES = [(level, end) for end in (0, -1) for level in ("lower", "upper")]
 
 def _edge(section: Section, level: str, end: int) -> tuple[float, float]:
     """Height and slope dz/dv of the lower or upper side at the left (0) or right (-1) edge."""
-    strips = section.strips
-    side = {"lower": "bottom", "upper": "top"}[level]
-    poles = strips.get(f"{'left' if end == 0 else 'right'}_{level}", strips[side]).poles
+    poles = section.outermost("left" if end == 0 else "right", level).poles
     (v, z, _), (v_next, z_next, _) = (poles[0], poles[1]) if end == 0 else (poles[-1], poles[-2])
     return z, 0.0 if section.rounded else (z_next - z) / (v_next - v)
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..model.solved import SolvedFabric
-from ..section.sections import KINDS, Section, contact_section, free_section
+from ..section.frame import KINDS
+from ..section.sections import contact_section, free_section
+from ..section.strips import Section
 from ..weave.weaves import Yarn
 from .planes import ControlPlane
 

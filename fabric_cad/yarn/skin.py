@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..section.sections import Section
 from ..section.splines import as_cubic
+from ..section.strips import Section
 from .planes import ControlPlane
 from .trajectory import Trajectory
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ..model.solved import SolvedFabric
-from ..section.sections import Section
+from ..section.strips import Section
 from ..weave.weaves import Yarn, yarns_of
 from .planes import ControlPlane, control_planes
 from .sections import control_sections

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.solved import SolvedFabric
-from ...section.sections import Section
+from ...section.strips import Section
 from ...weave.colours import COLOURS
 from ...weave.directions import Direction
 from ...weave.weaves import Yarn

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from ...model.solved import SolvedFabric
-from ...section.sections import Section
 from ...section.splines import Spline
+from ...section.strips import Section
 from ...weave.bodies import Body
 from ...weave.directions import Direction
 from ...weave.weaves import Yarn, yarns_of

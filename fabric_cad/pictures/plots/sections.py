@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.solved import SolvedFabric
-from ...section.sections import Section, contact_section, free_section
+from ...section.sections import contact_section, free_section
+from ...section.strips import Section
 from ...weave.colours import COLOURS
 from ...weave.directions import Direction
 from .outlines import section_outline
