@@ -13,7 +13,7 @@ PACKAGE = Path(fabric_cad.__file__).parent
 DOORS = {
     "cadquery": {"cad", "masters"},
     "OCP": {"cad"},
-    "gmsh": {"meshing/mesher.py"},
+    "gmsh": {"meshing/gmsh_session.py"},
     "pyvista": {"support/vtk.py"},
     "vtkmodules": {"support/vtk.py"},
     "dask": {"study/engine.py"},

@@ -199,7 +199,7 @@ def test_init_keeps_what_is_there(tmp_path, monkeypatch, capsys):
 def test_show_without_a_display_says_so(here, monkeypatch, capsys):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr("fabric_cad.meshing.mesher.read_mesh", lambda path: None)
+    monkeypatch.setattr("fabric_cad.meshing.read_mesh", lambda path: None)
     Path("build/plain").mkdir(parents=True)
     Path("build/plain/plain.msh").write_text("")
     assert main(["show", "plain"]) == 1

@@ -151,7 +151,7 @@ def test_kinds_of_pairs():
 
 @pytest.fixture(scope="module", params=["plain", "plain_flat", "plain_round", "twill22_chords"])
 def cell(request, tmp_path_factory):
-    from fabric_cad.meshing.mesher import read_mesh
+    from fabric_cad.meshing import read_mesh
 
     out = tmp_path_factory.mktemp("cells")
     make_cell(find_row(shipped_families(), request.param)[0], out)

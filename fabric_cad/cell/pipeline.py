@@ -118,7 +118,7 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
     msh = made.step.with_suffix(".msh")
     with stages("mesh"):
         with uninterrupted():
-            from ..meshing.mesher import mesh_cell, read_mesh
+            from ..meshing import mesh_cell, read_mesh
 
         mesh_cell(made.step, made.fabric, options, msh)
         mesh = read_mesh(msh)

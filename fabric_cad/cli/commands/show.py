@@ -28,7 +28,7 @@ def _show(name: str, options: RowOptions, voice: Voice) -> None:
         as_made = cell.CellOptions(families=options.families, out=options.out, rows=options.rows)
         cell.make(name, as_made, voice)
 
-    from ...meshing.mesher import read_mesh
+    from ...meshing import read_mesh
     from ...pictures import show_cell
 
     show_cell(read_mesh(mesh_file), name)
