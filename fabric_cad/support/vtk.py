@@ -19,3 +19,14 @@ def grid_writer():
         from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     return vtkXMLUnstructuredGridWriter()
+
+
+def image_writer():
+    """VTK's writer of image data as ``.vti``, which compresses nothing."""
+    with uninterrupted():
+        from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+    writer = vtkXMLImageDataWriter()
+    writer.SetCompressorTypeToNone()
+    writer.EncodeAppendedDataOff()
+    return writer

@@ -1,9 +1,4 @@
-"""A yarn cut by planes across it, anywhere along it: its outline's strips, and its area, in closed form.
-
-A patch of the skin is z and v over two parameters. Of pointed and flat sections the parameter along is the
-place along the yarn; where two round sections with different arcs blend, it is not quite, since a rational
-spline's weights pull it, and it is solved for.
-"""
+"""A yarn cut by planes across it, anywhere along it: the outline's strips, the section's area, the slope."""
 
 from __future__ import annotations
 
@@ -12,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..section.splines import Spline
+from .patches import basis_across, is_polynomial, level_of, segments_of, spline_along
 from .skin import Patch
 from .swept import SweptYarn
 
@@ -33,9 +29,10 @@ def cut(patch: Patch, places: np.ndarray, shares: np.ndarray) -> Profile:
 
     The places lie between the patch's control planes.
     """
-    along, across = _spline(patch), _across(patch, shares)
+    along, basis = spline_along(patch), basis_across(patch)
+    across = basis(shares), basis.derivative()(shares)
     parameter = np.repeat(np.asarray(places, dtype=float)[:, None], len(shares), axis=1)
-    if not _polynomial(patch):
+    if not is_polynomial(patch):
         parameter = _solved(along, across[0], parameter)
 
     point, onwards, sideways = _evaluated(along, across, parameter)
@@ -47,11 +44,10 @@ def cut(patch: Patch, places: np.ndarray, shares: np.ndarray) -> Profile:
 def section_areas(swept: SweptYarn, places: np.ndarray) -> np.ndarray:
     """Area (places,), mm2, of a yarn's section in the vertical planes across it at ``places`` (mm along it)."""
     places = np.asarray(places, dtype=float)
-    bounds = np.array([plane.place for plane in swept.planes])
-    segments = np.clip(np.searchsorted(bounds, places, side="right") - 1, 0, len(bounds) - 2)
+    segments = segments_of(swept, places)
     areas = np.zeros(len(places))
     for patch in swept.skin.patches:
-        sign = _side(patch)
+        sign = level_of(patch)
         within = np.flatnonzero(segments == patch.segment)
         if sign and len(within):
             shares, weights = _gauss(patch)
@@ -64,8 +60,7 @@ def section_areas(swept: SweptYarn, places: np.ndarray) -> np.ndarray:
 def slopes(swept: SweptYarn, places: np.ndarray) -> np.ndarray:
     """Slope dz/dt (places,) of a yarn's trajectory at ``places`` (mm along it)."""
     places = np.asarray(places, dtype=float)
-    bounds = np.array([plane.place for plane in swept.planes])
-    segments = np.clip(np.searchsorted(bounds, places, side="right") - 1, 0, len(bounds) - 2)
+    segments = segments_of(swept, places)
     found = np.empty(len(places))
     for number in np.unique(segments):
         within = segments == number
@@ -80,42 +75,13 @@ def _derivative(piece: Spline, places: np.ndarray) -> np.ndarray:
     return BSpline(piece.knots, piece.poles, piece.degree).derivative()(places)
 
 
-def _side(patch: Patch) -> int:
-    """1 where a patch is above the section's area, -1 where below it, 0 where upright."""
-    if patch.side in ("left", "right"):
-        return 0
-
-    return 1 if patch.side == "top" or patch.side.endswith("_upper") else -1
-
-
-def _polynomial(patch: Patch) -> bool:
-    return bool((patch.poles[..., 3] == 1.0).all())
-
-
 def _gauss(patch: Patch) -> tuple[np.ndarray, np.ndarray]:
     """Shares across a patch, span by span, and their weights."""
-    points, weights = np.polynomial.legendre.leggauss(_GAUSS[_polynomial(patch)])
+    points, weights = np.polynomial.legendre.leggauss(_GAUSS[is_polynomial(patch)])
     knots = np.unique(patch.across[0])
     spans = np.diff(knots)[:, None]
     shares = knots[:-1, None] + spans * (points + 1) / 2
     return shares.ravel(), (spans * weights / 2).ravel()
-
-
-def _spline(patch: Patch):
-    """Homogeneous poles over the parameter along."""
-    from scipy.interpolate import BSpline
-
-    knots, degree = patch.along
-    return BSpline(knots, patch.homogeneous, degree)
-
-
-def _across(patch: Patch, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Basis functions over the parameter across, and their derivatives, each (shares, poles)."""
-    from scipy.interpolate import BSpline
-
-    knots, degree = patch.across
-    basis = BSpline(knots, np.eye(patch.poles.shape[1]), degree)
-    return basis(shares), basis.derivative()(shares)
 
 
 def _evaluated(along, across, parameter) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
