@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from fabric_cad.measured.tables import Family, read_family
+from fabric_cad.weave.faults import pattern_faults
 from fabric_cad.weave.patterns import written
-from fabric_cad.weave.weaves import pattern_faults
 
 
 def table(family: str, *rows: dict, folder: Path | None = None) -> Family:

@@ -12,8 +12,9 @@ from fabric_cad.model.identification import identify
 from fabric_cad.model.lengths import excess_length
 from fabric_cad.model.solved import read_solved
 from fabric_cad.support.errors import InputError
+from fabric_cad.weave.faults import pattern_faults
 from fabric_cad.weave.patterns import read_pattern, written
-from fabric_cad.weave.weaves import FAMILIES, Weave, pattern_faults, yarns_of
+from fabric_cad.weave.weaves import FAMILIES, Weave, yarns_of
 
 HEADER = "name,pattern,weft_density_per_mm,weft_width_mm,weft_crimp"
 ROW = {key: TWILL32[key] for key in ("weft_density_per_mm", "weft_width_mm", "weft_crimp")}

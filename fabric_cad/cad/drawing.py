@@ -45,14 +45,15 @@ def wire_of(section: Section, plane: cq.Plane) -> cq.Wire:
 
 
 def edge_of(path: Trajectory) -> cq.Edge:
-    """The trajectory as one quadratic spline along the cell, its straight pieces raised to quadratics."""
+    """The trajectory as one quadratic spline along the cell, straight pieces raised to degree 2."""
     knots = [path.planes[0].place] * 3
     poles: list[tuple[float, float]] = []
     for piece in path.pieces:
         heights = piece.poles
+        inner = piece.knots[piece.degree + 1 : -piece.degree - 1].tolist()
         if piece.degree == 1:
             heights = np.array([heights[0], heights.mean(), heights[1]])
-        inner = piece.knots[piece.degree + 1 : -piece.degree - 1].tolist()
+
         whole = np.array([piece.knots[0]] * 3 + inner + [piece.knots[-1]] * 3)
         along = (whole[1:-2] + whole[2:-1]) / 2  # Greville abscissae
         poles += list(zip(along.tolist(), heights.tolist()))[1 if poles else 0 :]
@@ -70,11 +71,16 @@ def sweep_multisection(wires: Sequence[cq.Wire], path: cq.Edge) -> cq.Solid:
 
 
 def _spline_edge(
-    points: Sequence[tuple[float, float, float]], weights: Sequence[float], knots: np.ndarray, degree: int
+    points: Sequence[tuple[float, float, float]],
+    weights: Sequence[float],
+    knots: np.ndarray,
+    degree: int,
 ) -> cq.Edge:
-    poles, factors = TColgp_Array1OfPnt(1, len(points)), TColStd_Array1OfReal(1, len(points))
+    poles = TColgp_Array1OfPnt(1, len(points))
+    factors = TColStd_Array1OfReal(1, len(points))
     for number, (point, weight) in enumerate(zip(points, weights), start=1):
         poles.SetValue(number, gp_Pnt(*point))
         factors.SetValue(number, weight)
     values, times = knots_and_times(knots)
-    return cq.Edge(BRepBuilderAPI_MakeEdge(Geom_BSplineCurve(poles, factors, values, times, degree)).Edge())
+    curve = Geom_BSplineCurve(poles, factors, values, times, degree)
+    return cq.Edge(BRepBuilderAPI_MakeEdge(curve).Edge())

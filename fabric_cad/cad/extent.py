@@ -53,5 +53,11 @@ def _climbed(face: Face, start: np.ndarray, sign: float) -> float:
         return float(-sign * point[2] / point[3])
 
     bounds = [(float(knots[0]), float(knots[-1])) for knots in face.knots]
-    options = {"ftol": 1e-15, "gtol": 1e-12}
-    return float(-minimize(depth, start, bounds=bounds, method="L-BFGS-B", options=options).fun)
+    climbed = minimize(
+        depth,
+        start,
+        bounds=bounds,
+        method="L-BFGS-B",
+        options={"ftol": 1e-15, "gtol": 1e-12},
+    )
+    return float(-climbed.fun)

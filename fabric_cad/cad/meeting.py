@@ -104,16 +104,11 @@ def _grid(
     patch: Rectangle,
 ) -> tuple[PointsAlong, PointsAlong]:
     """Points along x and y, in cells that no knot line and no side of the patch crosses."""
-    x, y = (
-        PointsAlong.between(
-            *common[2 * axis : 2 * axis + 2],
-            [
-                *patch[2 * axis : 2 * axis + 2],
-                *(place for face in faces for place in face.knot_lines(axis)),
-            ],
-        )
-        for axis in (0, 1)
-    )
+    x_lines = [place for face in faces for place in face.knot_lines(0)]
+    y_lines = [place for face in faces for place in face.knot_lines(1)]
+    x0, x1, y0, y1 = common
+    x = PointsAlong.between(x0, x1, [*patch[:2], *x_lines])
+    y = PointsAlong.between(y0, y1, [*patch[2:], *y_lines])
     return x, y
 
 

@@ -21,9 +21,10 @@ _SEWING_TOLERANCE = 1e-7  # mm, OCCT's confusion; the edges sewn agree to roundi
 
 
 def sweep(path: Trajectory, sections: tuple[Section, ...], lattice: Lattice = AS_WOVEN) -> cq.Solid:
-    """One valid solid: the control sections swept along a trajectory, exactly, where ``lattice`` puts them.
+    """One valid solid: the control sections swept along a trajectory, exactly.
 
-    Raises :class:`BuildError` where OCCT does not close it to a valid solid.
+    It lies where ``lattice`` puts it. Raises :class:`BuildError` where OCCT does not close it to a
+    valid solid.
     """
     return solid_of(skin(path, sections), lattice)
 
@@ -32,29 +33,41 @@ def solid_of(surface: Skin, lattice: Lattice = AS_WOVEN) -> cq.Solid:
     """The solid bounded by a skin and its two end sections."""
     faces = [_face(patch, surface, lattice) for patch in surface.patches]
     open_shell, rim = _sew(faces)
-    along = lattice.woven_coordinate(surface.direction.axis)
-    ends = [_cap(rim, along, place) for place in (surface.planes[0].place, surface.planes[-1].place)]
+
+    along = lattice.woven_coordinate(Direction(surface.direction).axis)
+    places = surface.planes[0].place, surface.planes[-1].place
+    ends = [_cap(rim, along, place) for place in places]
     shell, _ = _sew([*open_shell.Faces(), *ends])
+
     solid = cq.Solid.makeSolid(shell) if isinstance(shell, cq.Shell) else None
     if solid is None or not solid.isValid():
-        raise BuildError(f"the {surface.direction} at {surface.axis:g} mm does not close to a valid solid")
+        yarn = f"the {surface.direction} at {surface.axis:g} mm"
+        raise BuildError(f"{yarn} does not close to a valid solid")
     return solid
 
 
 def _face(patch: Patch, surface: Skin, lattice: Lattice) -> cq.Face:
-    rows, columns, _ = patch.poles.shape
-    poles, weights = TColgp_Array2OfPnt(1, rows, 1, columns), TColStd_Array2OfReal(1, rows, 1, columns)
+    """The face of a patch, with the patch's own poles, where the lattice puts them."""
     t, v, z, weight = np.moveaxis(patch.poles, 2, 0)
-    plan = (t, v + surface.axis) if surface.direction is Direction.WEFT else (v + surface.axis, t)
+    plan = (t, v + surface.axis) if surface.direction == Direction.WEFT else (v + surface.axis, t)
     places = lattice.to_space(np.stack([*plan, z], axis=2))
+
+    rows, columns = weight.shape
+    poles = TColgp_Array2OfPnt(1, rows, 1, columns)
+    weights = TColStd_Array2OfReal(1, rows, 1, columns)
     for i, (row, shares) in enumerate(zip(places.tolist(), weight.tolist()), start=1):
         for j, (place, share) in enumerate(zip(row, shares), start=1):
             poles.SetValue(i, j, gp_Pnt(*place))
             weights.SetValue(i, j, share)
-    (u_knots, u_times), (v_knots, v_times) = knots_and_times(patch.along[0]), knots_and_times(patch.across[0])
-    knots = u_knots, v_knots, u_times, v_times, patch.along[1], patch.across[1]
-    rational = (patch.poles[..., 3] != 1.0).any()
-    spline = Geom_BSplineSurface(poles, weights, *knots) if rational else Geom_BSplineSurface(poles, *knots)
+
+    (along, along_degree), (across, across_degree) = patch.along, patch.across
+    u_knots, u_times = knots_and_times(along)
+    v_knots, v_times = knots_and_times(across)
+    knots = u_knots, v_knots, u_times, v_times, along_degree, across_degree
+    if (weight != 1.0).any():
+        spline = Geom_BSplineSurface(poles, weights, *knots)
+    else:
+        spline = Geom_BSplineSurface(poles, *knots)
     return cq.Face(BRepBuilderAPI_MakeFace(spline, _SEWING_TOLERANCE).Face())
 
 
@@ -85,11 +98,10 @@ def _cap(rim: list[cq.Edge], along: np.ndarray, place: float) -> cq.Face:
 
     ``along`` (3,) times a point of space is the woven coordinate along the yarn, mm.
     """
-    edges = [
-        edge
-        for edge in rim
-        if all(
-            abs(along @ point.toTuple() - place) < _SEWING_TOLERANCE for point in (edge.startPoint(), edge.endPoint())
-        )
-    ]
+
+    def lies_there(edge: cq.Edge) -> bool:
+        ends = edge.startPoint(), edge.endPoint()
+        return all(abs(along @ end.toTuple() - place) < _SEWING_TOLERANCE for end in ends)
+
+    edges = [edge for edge in rim if lies_there(edge)]
     return cq.Face.makeFromWires(cq.Wire.assembleEdges(edges))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from cadquery.occ_impl.assembly import toCAF
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
+from OCP.Quantity import Quantity_Color
 from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
 from OCP.STEPConstruct import STEPConstruct, STEPConstruct_Styles
 from OCP.STEPControl import STEPControl_AsIs
@@ -44,14 +45,19 @@ class Cell:
 
     @property
     def solids(self) -> dict[str, cq.Solid]:
-        """Yarn name to solid, wefts first."""
-        return {child.name: child.obj for child in self.assembly.children}
+        """Yarn name to solid, wefts first. Raises :class:`BuildError` where a part is none."""
+        solids = {}
+        for part in self.assembly.children:
+            if not isinstance(part.obj, cq.Solid):
+                raise BuildError(f"{part.name} is no solid")
+            solids[part.name] = part.obj
+        return solids
 
     def write_step(self, path: str | Path) -> None:
-        """Write the cell as STEP AP214, mm: the same bytes for the same cell and version of this program and OCCT.
+        """Write the cell as STEP AP214, mm.
 
-        The header names the row and the version; its time is a fixed one. Raises :class:`BuildError` where OCCT
-        cannot.
+        The same bytes for the same cell and version of this program and OCCT: the header names the
+        row and the version; its time is a fixed one. Raises :class:`BuildError` where OCCT cannot.
         """
         session = XSControl_WorkSession()
         writer = STEPCAFControl_Writer(session, False)
@@ -61,17 +67,21 @@ class Cell:
         Interface_Static.SetIVal_s("write.precision.mode", 0)
         Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
         Interface_Static.SetCVal_s("write.step.unit", "MM")
+
         _, document = toCAF(self.assembly, True)
         writer.Transfer(document, STEPControl_AsIs)
         _number(session)
-        _colour(session, self.assembly)
+        _colour(session, self.solids)
         _write_header(session, self.name or Path(path).stem)
         if writer.Write(str(path)) != IFSelect_RetDone or not Path(path).exists():
             raise BuildError(f"{path}: OCCT wrote no STEP file")
 
 
 def _number(session: XSControl_WorkSession) -> None:
-    """Number the yarns' places in the assembly from 1; OCCT counts on from file to file of a process."""
+    """Number the yarns' places in the assembly from 1.
+
+    OCCT itself counts on from file to file of a process.
+    """
     model, count = session.Model(), 0
     for index in range(1, model.NbEntities() + 1):
         entity = model.Value(index)
@@ -80,20 +90,28 @@ def _number(session: XSControl_WorkSession) -> None:
             entity.SetId(_text(str(count)))
 
 
-def _colour(session: XSControl_WorkSession, assembly: cq.Assembly) -> None:
+def _colour(session: XSControl_WorkSession, solids: Mapping[str, cq.Solid]) -> None:
     """Add a style for every solid, in the order of the yarns."""
     model, finder = session.Model(), session.TransferWriter().FinderProcess()
-    for part in assembly.children:
+    for name, solid in solids.items():
         styles = STEPConstruct_Styles(session)
-        item = STEPConstruct.FindEntity_s(finder, part.obj.wrapped)
-        colour = STEPConstruct_Styles.EncodeColor_s(part.color.wrapped.GetRGB())
+        item = STEPConstruct.FindEntity_s(finder, solid.wrapped)
         if item is None:
-            raise BuildError(f"{part.name}: OCCT has not written it")
+            raise BuildError(f"{name}: OCCT has not written it")
+
+        colour = STEPConstruct_Styles.EncodeColor_s(_rgb(name))
+        style = styles.MakeColorPSA(item, colour, None, None, 0.0)
         styled = StepRepr_HArray1OfRepresentationItem(1, 1)
-        styled.SetValue(1, styles.AddStyle(item, styles.MakeColorPSA(item, colour, None, None, 0.0), None))
+        styled.SetValue(1, styles.AddStyle(item, style, None))
+
         presentation = StepVisual_MechanicalDesignGeometricPresentationRepresentation()
-        presentation.Init(_text(""), styled, styles.FindContext(part.obj.wrapped))
+        presentation.Init(_text(""), styled, styles.FindContext(solid.wrapped))
         model.AddWithRefs(presentation)
+
+
+def _rgb(name: str) -> Quantity_Color:
+    """The colour of the yarn that is called so."""
+    return cq.Color(*colour_of(Body.named(name))).wrapped.GetRGB()
 
 
 def _write_header(session: XSControl_WorkSession, name: str) -> None:
@@ -129,18 +147,20 @@ def read_step(path: str | Path) -> dict[str, cq.Solid]:
     Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
     if reader.ReadFile(str(path)) != IFSelect_RetDone:
         raise BuildError(f"{path}: cannot be read as STEP")
+
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     try:
         if not reader.Transfer(document):
             raise BuildError(f"{path}: cannot be read as STEP")
         solids: dict[str, cq.Solid] = {}
         for name, shape in _parts(document):
-            found = shape.Solids()
-            if len(found) != 1 or name in solids:
+            bodies = shape.Solids()
+            if len(bodies) != 1 or name in solids:
                 raise BuildError(f"{path}: {name} is not one solid of its own name")
-            solids[name] = found[0]
+            solids[name] = bodies[0]
     finally:
         document.Main().Root().ForgetAllAttributes(True)  # else every file read stays in memory
+
     if not solids:
         raise BuildError(f"{path}: holds no assembly of solids")
     return solids
@@ -151,9 +171,11 @@ def _parts(document: TDocStd_Document) -> Iterator[tuple[str, cq.Shape]]:
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     roots = TDF_LabelSequence()
     shapes.GetFreeShapes(roots)
+
     for root in (roots.Value(k) for k in range(1, roots.Length() + 1)):
         parts = TDF_LabelSequence()
         shapes.GetComponents_s(root, parts, True)
+
         for part in (parts.Value(k) for k in range(1, parts.Length() + 1)):
             name = TDataStd_Name()
             named = part.FindAttribute(TDataStd_Name.GetID_s(), name)

@@ -1,15 +1,15 @@
-"""Master of the satins of N harnesses: a weft passes over one warp; the next starts `step` warps on.
+"""Master of the satins of N harnesses: a weft passes over one warp, the next `step` warps on.
 
 Open this file in CQ-editor, let SOLVED name a row that `fabric-cad cell` has solved, and run.
-A control plane is a cq.Plane, a control section a cq.Wire, a trajectory a cq.Edge, a yarn a cq.Solid.
+A control plane is a cq.Plane, a control section a cq.Wire, a trajectory a cq.Edge and a yarn a
+cq.Solid; woven.py draws and sweeps them.
 """
 
-import cadquery as cq
-
-from fabric_cad.masters.woven import colour_of, draw, solved_row, woven
+from fabric_cad.masters.woven import parts, solved_row, woven
 
 SOLVED = "build/satin8/solved.csv"
-SWEEP = "exact"  # or "multisection": CadQuery's own sweep through the wires, which is near the exact skin only
+SWEEP = "exact"
+# or "multisection": CadQuery's own sweep through the wires, which is near the exact skin only
 
 
 def over(weft, warp, weave):
@@ -36,20 +36,9 @@ def cell(fabric):
     return woven(fabric, rule(fabric.weave), section, SWEEP)
 
 
-if "show_object" in globals():
+if show_object := globals().get("show_object"):  # CQ-editor runs this file
     fabric = solved_row(SOLVED)
-    solids = cell(fabric).solids
-
-    for name, yarn in draw(fabric, rule(fabric.weave), section).items():
-        path: cq.Edge = yarn.path  # M11 ... M16 or M21 ... M26, over the whole cell
-        show_object(path, name=f"{name} trajectory")  # noqa: F821
-
-        for number in range(len(yarn.planes)):
-            plane: cq.Plane = yarn.planes[number]  # origin on the trajectory, x across, y upwards
-            wire: cq.Wire = yarn.wires[number]  # the control section in it
-            frame = cq.Workplane(plane).rect(*yarn.frame)
-            show_object(frame, name=f"{name} plane {number}")  # noqa: F821
-            show_object(wire, name=f"{name} section {number}")  # noqa: F821
-
-        solid: cq.Solid = solids[name]
-        show_object(solid, name=name, options={"color": colour_of(name)})  # noqa: F821
+    for part in parts(fabric, rule(fabric.weave), section, SWEEP):
+        # of every yarn: trajectory, a cq.Edge; control planes, each a cq.Workplane with a frame in
+        # it; control sections, a cq.Wire each; the yarn itself, a cq.Solid
+        show_object(part.shape, name=part.name, options=part.options)

@@ -8,8 +8,8 @@ and which section stands in a plane, is what a master says.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import cadquery as cq
@@ -54,12 +54,25 @@ class Drawing:
         return 1.5 * max(box.xlen, box.ylen), 1.5 * box.zlen
 
 
+@dataclass(frozen=True, eq=False)
+class Part:
+    """What CQ-editor shows: a shape, its name and, in ``options``, its colour."""
+
+    shape: cq.Edge | cq.Wire | cq.Workplane | cq.Solid
+    name: str
+    options: dict[str, tuple[int, ...]] = field(default_factory=dict)
+
+
 def own(swept: SweptYarn, number: int) -> Section:
     """The model's own control section in a plane."""
     return swept.sections[number]
 
 
-def draw(fabric: SolvedFabric, weft_over_warp: ArrayLike, section: Sections = own) -> dict[str, Drawing]:
+def draw(
+    fabric: SolvedFabric,
+    weft_over_warp: ArrayLike,
+    section: Sections = own,
+) -> dict[str, Drawing]:
     """Yarn name to its planes, wires and trajectory, wefts first."""
     drawings = {}
     for yarn in yarns_of(np.asarray(weft_over_warp)):
@@ -68,6 +81,28 @@ def draw(fabric: SolvedFabric, weft_over_warp: ArrayLike, section: Sections = ow
         wires = [wire_of(drawn, plane) for drawn, plane in zip(_sections(swept, section), planes)]
         drawings[yarn.name] = Drawing(yarn.name, planes, wires, edge_of(swept.trajectory))
     return drawings
+
+
+def parts(
+    fabric: SolvedFabric,
+    weft_over_warp: ArrayLike,
+    section: Sections = own,
+    kind: str = "exact",
+) -> Iterator[Part]:
+    """Everything that makes a cell, yarn by yarn: trajectory, control planes and sections, solid.
+
+    Arguments and errors as of :func:`woven`.
+    """
+    solids = woven(fabric, weft_over_warp, section, kind).solids
+    for name, yarn in draw(fabric, weft_over_warp, section).items():
+        yield Part(yarn.path, f"{name} trajectory")  # M11 ... M16 or M21 ... M26, all along
+
+        for number, (plane, wire) in enumerate(zip(yarn.planes, yarn.wires)):
+            frame = cq.Workplane(plane).rect(*yarn.frame)  # x across the yarn, y upwards
+            yield Part(frame, f"{name} plane {number}")
+            yield Part(wire, f"{name} section {number}")
+
+        yield Part(solids[name], name, {"color": colour_of(name)})
 
 
 def woven(

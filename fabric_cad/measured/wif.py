@@ -18,9 +18,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..support.errors import InputError, Problem, quoted
-from ..weave.faults import repeat_fault
+from ..weave.faults import pattern_faults, repeat_fault
 from ..weave.patterns import written
-from ..weave.weaves import pattern_faults
 from .columns import is_safe_name
 from .drafts import MOST_THREADS, Draft, read_draft
 from .setts import sett

@@ -24,7 +24,7 @@ class BodyKind(StrEnum):
 
 @dataclass(frozen=True)
 class Body:
-    """One body of a cell; a yarn (:class:`YarnBody`) has a direction and an index, any other has neither."""
+    """One body of a cell; a yarn (:class:`YarnBody`) has a direction and an index, others neither."""
 
     kind: BodyKind
     direction: Direction | None = None

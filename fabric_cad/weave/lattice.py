@@ -49,7 +49,10 @@ class Lattice:
         return bool(np.array_equal(self.axes, np.eye(3)))
 
     def to_space(self, woven: np.ndarray) -> np.ndarray:
-        """Places (..., 3) in space, mm, of woven coordinates (..., 3); the same array where they agree."""
+        """Places (..., 3) in space, mm, of woven coordinates (..., 3).
+
+        The same array where they agree.
+        """
         return woven if self.is_axis_parallel else woven @ self.axes
 
     def to_woven(self, places: np.ndarray) -> np.ndarray:
@@ -57,7 +60,10 @@ class Lattice:
         return places if self.is_axis_parallel else places @ np.linalg.inv(self.axes)
 
     def woven_coordinate(self, axis: int) -> np.ndarray:
-        """The vector (3,) whose product with a place in space is its woven coordinate: 0 for u, 1 for v, 2 for z."""
+        """The vector (3,) whose product with a place in space is its woven coordinate.
+
+        ``axis`` is 0 for u, 1 for v, 2 for z.
+        """
         return np.linalg.inv(self.axes)[:, axis]
 
 

@@ -11,7 +11,7 @@ weft 1, at the smallest y; its first mark is warp 1, at the smallest x.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from ..support.errors import quoted
 
@@ -31,24 +31,13 @@ def read_pattern(text: str) -> tuple[str, ...]:
     if strange := used - _DIGITS - _LETTERS:
         shown = " ".join(sorted(strange))
         raise ValueError(
-            f"{quoted(text)} has {shown} in it; a pattern is of 1 and 0, or of o and u, for a weft over and under "
-            "a warp (a spreadsheet makes a date of 10/01, but not of ou/uo)"
+            f"{quoted(text)} has {shown} in it; a pattern is of 1 and 0, or of o and u, "
+            "for a weft over and under a warp "
+            "(a spreadsheet makes a date of 10/01, but not of ou/uo)"
         )
     if used & _DIGITS and used & _LETTERS:
         raise ValueError(f"{quoted(text)} has digits and letters; write 1 and 0, or o and u")
     return tuple(row.translate(str.maketrans("ou", "10")) for row in marks)
-
-
-def size_fault(text: str, pattern: Sequence[str], most: int) -> str | None:
-    """What is wrong with the numbers of wefts and warps of a pattern, 2 to ``most`` of either, None for nothing."""
-    if not pattern:
-        return "this cell is empty"
-    if len(pattern) == 1:
-        return f"{quoted(text)} is one weft only; part the wefts by a space, / or |"
-    warps = max(map(len, pattern))
-    if max(len(pattern), warps) > most:
-        return f"{len(pattern)} wefts x {warps} warps are more than {most} in a direction"
-    return None
 
 
 def written(pattern: Iterable[str]) -> str:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from math import gcd
 
 import numpy as np
 
 from .bodies import Body, YarnBody
 from .directions import Direction
+from .faults import pattern_faults, regular_fault
 
 FAMILIES = ("plain", "twill", "satin", "pattern")
 """The weave types; each has one table ``<family>.csv`` and one master."""
@@ -28,7 +28,7 @@ class Weave:
     ``pattern`` has one text a weft, of ``1`` where it passes over the warp and ``0`` where
     under; ``over``, ``under`` and ``step`` then mean nothing and are 0. Every yarn must
     change sides somewhere, and none may lie over or under all others with nothing tying them
-    together (:func:`pattern_faults`). Raises ValueError.
+    together (:mod:`~fabric_cad.weave.faults`). Raises ValueError.
     """
 
     over: int = 0
@@ -40,11 +40,8 @@ class Weave:
         if self.pattern:
             if faults := pattern_faults(self.pattern):
                 raise ValueError("; ".join(faults))
-            return
-        if self.over < 1 or self.under < 1:
-            raise ValueError(f"a yarn passes over and under at least one yarn, got {self.over}*{self.under}")
-        if gcd(self.step, self.over + self.under) != 1:
-            raise ValueError(f"step {self.step} is not coprime to {self.over + self.under}")
+        elif fault := regular_fault(self.over, self.under, self.step):
+            raise ValueError(fault)
 
     @property
     def wefts(self) -> int:
@@ -71,60 +68,25 @@ class Weave:
         """What people call it, e.g. ``satin 8 step 3`` or ``pattern 4 wefts x 6 warps``."""
         if self.pattern:
             return f"{family} {self.wefts} wefts x {self.warps} warps"
-        return f"{family} {self.warps} step {self.step}" if family == "satin" else f"{family} {self.over}*{self.under}"
+        if family == "satin":
+            return f"{family} {self.warps} step {self.step}"
+        return f"{family} {self.over}*{self.under}"
 
     def floats(self, direction: Direction) -> tuple[float, float]:
         """Mean length of a direction's low and of its high floats, in crossed yarns."""
-        if not self.pattern:
-            return (self.under, self.over) if direction == Direction.WEFT else (self.over, self.under)
-        return _mean_floats(self, direction)
-
-
-@lru_cache(maxsize=1024)
-def pattern_faults(pattern: tuple[str, ...]) -> tuple[str, ...]:
-    """What makes a pattern of ``1`` and ``0`` no weave, one text each; none where it is one."""
-    if strange := set("".join(pattern)) - {"0", "1"}:
-        return (f"a pattern is of 0 and 1, not {', '.join(sorted(strange))}",)
-    warps = len(pattern[0])
-    if uneven := [
-        f"weft {number} has {len(row)} marks where weft 1 has {warps}"
-        for number, row in enumerate(pattern, start=1)
-        if len(row) != warps
-    ]:
-        return tuple(uneven)
-    idle = []
-    for name, yarns in (("weft", pattern), ("warp", list(zip(*pattern)))):
-        for number, yarn in enumerate(yarns, start=1):
-            if len(set(yarn)) == 1:
-                side = "over" if (yarn[0] == "1") == (name == "weft") else "under"
-                idle.append(f"{name} {number} passes {side} every yarn and never interlaces")
-    return tuple(idle) or _layers(np.array([[mark == "1" for mark in row] for row in pattern]))
-
-
-def _layers(weft_over_warp: np.ndarray) -> tuple[str, ...]:
-    """A text where some yarns lie wholly under the others: then nothing holds the fabric together."""
-    for side, over in (("under", weft_over_warp), ("over", ~weft_over_warp)):
-        wefts, warps = np.zeros(len(over), dtype=bool), np.zeros(over.shape[1], dtype=bool)
-        wefts[0] = True  # and from there every yarn that lies below (above) one reached
-        before, reached = 0, 1
-        while reached > before:
-            warps |= over[wefts].any(axis=0)
-            wefts |= ~over[:, warps].all(axis=1)
-            before, reached = reached, np.count_nonzero(wefts) + np.count_nonzero(warps)
-        if reached < sum(over.shape):
-            names = (
-                f"{name} {', '.join(map(str, np.flatnonzero(yarns) + 1))}"
-                for name, yarns in (("weft", wefts), ("warp", warps))
-            )
-            return (f"{' and '.join(names)} lie {side} all other yarns: the weave falls into separate layers",)
-    return ()
+        if self.pattern:
+            return _mean_floats(self, direction)
+        if direction == Direction.WEFT:
+            return self.under, self.over
+        return self.over, self.under
 
 
 @lru_cache(maxsize=1024)
 def _mean_floats(weave: Weave, direction: Direction) -> tuple[float, float]:
+    """Crossings on either side per float on it: every high float is followed by a low one."""
     yarns = yarns_of(weave.interlacement())
     high = np.array([yarn.high for yarn in yarns if yarn.direction == direction])
-    floats = np.count_nonzero(high & ~np.roll(high, 1, axis=1))  # high floats; as many low ones
+    floats = np.count_nonzero(high & ~np.roll(high, 1, axis=1))
     return float(np.count_nonzero(~high) / floats), float(np.count_nonzero(high) / floats)
 
 
@@ -171,22 +133,21 @@ class Yarn:
 
         The crossing before the first is the last one, a period earlier.
         """
-        return tuple(before == high for before, high in zip(self.high[-1:] + self.high[:-1], self.high))
+        before = self.high[-1:] + self.high[:-1]
+        return tuple(was_high == high for was_high, high in zip(before, self.high))
 
 
 def yarns_of(interlacement: np.ndarray) -> tuple[Yarn, ...]:
     """Every yarn of a cell, wefts first, from its interlacement matrix (wefts, warps)."""
-    yarns = []
-    for direction, high in ((Direction.WEFT, interlacement), (Direction.WARP, ~interlacement.T)):
-        for index in range(len(high)):
-            before, after = high[index - 1], high[(index + 1) % len(high)]
-            yarns.append(
-                Yarn(
-                    direction=direction,
-                    index=index,
-                    high=tuple(high[index].tolist()),
-                    turns_left=tuple((before != high[index]).tolist()),
-                    turns_right=tuple((after != high[index]).tolist()),
-                )
-            )
-    return tuple(yarns)
+    return (
+        *_yarns_along(Direction.WEFT, interlacement),
+        *_yarns_along(Direction.WARP, ~interlacement.T),
+    )
+
+
+def _yarns_along(direction: Direction, high: np.ndarray) -> Iterator[Yarn]:
+    """The yarns of a direction; ``high`` (yarns, crossings) is True where one passes over."""
+    turns_left = np.roll(high, 1, axis=0) != high
+    turns_right = np.roll(high, -1, axis=0) != high
+    for index, rows in enumerate(zip(high, turns_left, turns_right)):
+        yield Yarn(direction, index, *(tuple(row.tolist()) for row in rows))
