@@ -9,6 +9,7 @@ import numpy as np
 
 from ..model.solved import SolvedFabric
 from ..section.strips import Section
+from ..weave.directions import DIRECTIONS, Direction
 from ..weave.weaves import Yarn
 from ..yarn.planes import contact_segment
 from ..yarn.skin import Skin
@@ -53,26 +54,38 @@ class Plan:
         return np.concatenate([[0], np.cumsum([len(shares) - 1 for shares in self.layers])])
 
 
-def plan_yarns(fabric: SolvedFabric, yarns: Sequence[Yarn], options: MeshOptions) -> list[Plan]:
-    """Plan the meshes of yarns so that the contact nodes will coincide with those of the yarns they cross."""
-    plans = [_plan_yarn(fabric, yarn, options) for yarn in yarns]
+def plan_yarns(
+    fabric: SolvedFabric,
+    yarns: Sequence[Yarn],
+    options: MeshOptions,
+    gap: Mapping[Direction, np.ndarray] | None = None,
+) -> list[Plan]:
+    """Plan the meshes of yarns so that the contact nodes will coincide with those of the yarns they cross.
+
+    ``gap`` gives for yarns of either direction the shares from 0, a crossing's end, to 1, mid-gap, at which
+    nodes lie; evenly where it is None.
+    """
+    evenly = np.linspace(0.0, 1.0, options.gap // 2 + 1)
+    gaps = dict.fromkeys(DIRECTIONS, (evenly, evenly))
+    if gap is not None:
+        gaps = {direction: (1.0 - shares[::-1], shares) for direction, shares in gap.items()}
+    plans = [_plan_yarn(fabric, yarn, options, gaps[yarn.direction]) for yarn in yarns]
     return section_mesh(fabric.form).completed(plans, options)
 
 
-def _plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions) -> Plan:
+def _plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions, gaps: tuple[np.ndarray, np.ndarray]) -> Plan:
     swept = SweptYarn(fabric, yarn)
     planes = swept.planes
     mesh, frame = section_mesh(fabric.form), fabric.frame(yarn.direction)
     crossed = "warp" if yarn.direction == "weft" else "weft"
     across = {"weft": options.across, "warp": options.crossing}
 
-    gap = np.linspace(0.0, 1.0, options.gap // 2 + 1)
-    layers = []
+    layers: list[np.ndarray] = []
     for high in yarn.high:
         # along a crossing nodes lie as they do across the side of the crossed yarn that is touched
         side = "top" if high else "bottom"
         columns = mesh.columns(fabric.frame(crossed), side, across[crossed])
-        layers += [gap, *map(_shares, columns), gap]
+        layers += [gaps[0], *map(_shares, columns), gaps[1]]
 
     outline = mesh.outline(frame, across[yarn.direction], options.through)
     contacts = [(contact_segment(planes, k), "bottom" if high else "top") for k, high in enumerate(yarn.high)]

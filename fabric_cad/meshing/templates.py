@@ -49,7 +49,7 @@ class Template:
 def flat_template(across: int, through: int) -> Template:
     """``across`` x ``through`` quadrilaterals between a section's four corners."""
     outline, bottom, top, left, right = _sides(across, through)
-    return _template(outline, [_coons(bottom, top, left, right)])
+    return numbered(outline, [coons(bottom, top, left, right)])
 
 
 @lru_cache(maxsize=256)
@@ -66,15 +66,15 @@ def lenticular_template(across: int, through: int, near: float = 0.5) -> Templat
     node = np.eye(outline)
     bottom = node[: across + 1]
     top = np.vstack([node[across:], node[:1]])[::-1]
-    core = _coons(
+    core = coons(
         bottom[through : across - through + 1],
         top[through : across - through + 1],
-        _straight(bottom[through], top[through], through),
-        _straight(bottom[-through - 1], top[-through - 1], through),
+        straight(bottom[through], top[through], through),
+        straight(bottom[-through - 1], top[-through - 1], through),
     )
     left = _tip(bottom[: through + 1], top[: through + 1], k, near)
     right = _tip(bottom[::-1][: through + 1], top[::-1][: through + 1], k, near)
-    return _template(outline, [core, *left, *(patch[::-1] for patch in right)])
+    return numbered(outline, [core, *left, *(patch[::-1] for patch in right)])
 
 
 @lru_cache(maxsize=256)
@@ -95,7 +95,7 @@ def round_template(across: int, through: int, inset: tuple[float, float]) -> Tem
         np.stack([left, block[0]], axis=0),
         np.stack([block[-1], right], axis=0),
     ]
-    return _template(outline, [block, *ring])
+    return numbered(outline, [block, *ring])
 
 
 def block_modes(across: int, through: int) -> np.ndarray:
@@ -141,19 +141,20 @@ def _tip(bottom: np.ndarray, top: np.ndarray, k: int, near: float) -> list[np.nd
     middle = (bottom[2 * k] + top[2 * k]) / 2
     share = min(4 / 3 * near, 0.9)
     centre = (1 - share) * bottom[0] + share * middle
-    to_top, to_bottom, to_middle = (_straight(centre, end, k) for end in (top[k], bottom[k], middle))
-    point = _coons(bottom[: k + 1], to_top[::-1], top[: k + 1], to_bottom[::-1])
-    upper = _coons(to_middle, top[k:], to_top, _straight(middle, top[2 * k], k))
-    lower = _coons(bottom[k:], to_middle, to_bottom[::-1], _straight(bottom[2 * k], middle, k))
+    to_top, to_bottom, to_middle = (straight(centre, end, k) for end in (top[k], bottom[k], middle))
+    point = coons(bottom[: k + 1], to_top[::-1], top[: k + 1], to_bottom[::-1])
+    upper = coons(to_middle, top[k:], to_top, straight(middle, top[2 * k], k))
+    lower = coons(bottom[k:], to_middle, to_bottom[::-1], straight(bottom[2 * k], middle, k))
     return [point, upper, lower]
 
 
-def _straight(start: np.ndarray, end: np.ndarray, parts: int) -> np.ndarray:
+def straight(start: np.ndarray, end: np.ndarray, parts: int) -> np.ndarray:
+    """A straight side between two nodes, as weights (parts + 1, outline)."""
     share = np.linspace(0.0, 1.0, parts + 1)[:, None]
     return (1 - share) * start + share * end
 
 
-def _coons(bottom: np.ndarray, top: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+def coons(bottom: np.ndarray, top: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Transfinite patch between four sides, shape (columns + 1, rows + 1, outline)."""
     patch = _coons_at(bottom, top, left, right, np.linspace(0.0, 1.0, len(bottom)), np.linspace(0.0, 1.0, len(left)))
     patch[:, 0], patch[:, -1], patch[0], patch[-1] = bottom, top, left, right
@@ -169,7 +170,7 @@ def worst_corner(template: Template, outline: np.ndarray) -> float:
     return float((cross / np.linalg.norm(ahead, axis=-1) / np.linalg.norm(behind, axis=-1)).min())
 
 
-def _template(outline: int, patches: list[np.ndarray]) -> Template:
+def numbered(outline: int, patches: list[np.ndarray]) -> Template:
     """Number the nodes of all patches once and read off the quadrilaterals."""
     numbers: dict[bytes, int] = {}
     weights = list(np.eye(outline))

@@ -73,12 +73,13 @@ class YarnBody(Body):
 
 
 class SurfaceKind(StrEnum):
-    """A part of a yarn's surface; its ends lie a period apart."""
+    """A part of a yarn's surface; its ends lie a period apart. In a composite it is bonded to the matrix where free."""
 
     CONTACT = "contact"
     FREE = "free"
     START = "start"
     END = "end"
+    MATRIX = "matrix"
 
 
 _KINDS = "|".join(SurfaceKind)

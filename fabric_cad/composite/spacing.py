@@ -1,0 +1,69 @@
+"""How the stations of a gap are spaced where strips of resin lie beside the yarns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ..meshing.options import MeshOptions, mesh_options
+from ..model.solved import SolvedFabric
+from ..support.errors import InputError, Problem
+from ..weave.directions import DIRECTIONS, Direction
+
+_SIDES = 1.5
+"""Width of a strip of resin beside a flat side, in heights of the side."""
+
+_OF_HALF_GAP = 0.45
+"""Share of half a gap that a strip beside arcs takes, and one beside a flat side at most."""
+
+
+def composite_mesh_options(fabric: SolvedFabric, **asked: Any) -> MeshOptions:
+    """Mesh options of a composite from what a user asked for, as :func:`fabric_cad.meshing.mesh_options` takes it.
+
+    Beside flat and round sections a gap has room for the strips of resin, unless ``gap`` is given. Raises
+    :class:`InputError` where strips do not fit.
+    """
+    options = mesh_options(fabric, **asked)
+    if asked.get("gap") is None:
+        options = replace(options, gap=max(options.gap, 2 * _resin_lines(fabric, options) + 2))
+        options.check(fabric)
+    gap_shares(fabric, options)
+    return options
+
+
+def _resin_lines(fabric: SolvedFabric, options: MeshOptions) -> int:
+    """The lines of a gap that a strip of resin takes beyond a yarn's edge."""
+    if fabric.section == "lenticular":
+        return 0
+    if options.through % 2:
+        message = f"{options.through} is odd; the strips of resin beside flat sections take an even number of layers"
+        raise InputError(Problem(message, column="through"))
+    edges = options.through if fabric.section == "flat" else options.through - 2
+    return edges // 2 + 1
+
+
+def gap_shares(fabric: SolvedFabric, options: MeshOptions) -> Mapping[Direction, np.ndarray] | None:
+    """For yarns of either direction, the shares from 0, a crossing's end, to 1, mid-gap, at which nodes lie.
+
+    None where they lie evenly. Raises :class:`InputError` where a gap has no room for the strips of resin.
+    """
+    taken, half = _resin_lines(fabric, options), options.gap // 2
+    if not taken:
+        return None
+    if half <= taken:
+        message = f"{options.gap} is below {2 * taken + 2}: strips of resin lie beside {fabric.section} sections"
+        raise InputError(Problem(message, column="gap"))
+
+    shares = {}
+    for direction in DIRECTIONS:
+        width = (fabric.directions[direction].crossed_spacing - fabric.crossed(direction).width) / 2
+        strip = _OF_HALF_GAP
+        if fabric.section == "flat":
+            strip = min(_SIDES * fabric.lateral_height / width, strip)
+        inner, outer = np.linspace(0.0, strip, taken + 1), np.linspace(strip, 1.0, half - taken + 1)
+        shares[direction] = np.concatenate([inner, outer[1:]])
+    return MappingProxyType(shares)
