@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fabric_cad.composite.elements import Elements
-from fabric_cad.composite.homogenise import (
+from fabric_cad.composite.homogenisation.elements import Elements
+from fabric_cad.composite.homogenisation.homogenise import (
     PLATE_STRAINS,
     UNIT_STRAINS,
     Materials,
@@ -14,8 +14,8 @@ from fabric_cad.composite.homogenise import (
     homogenise,
     homogenise_plate,
 )
-from fabric_cad.composite.periodicity import PeriodicMesh
-from fabric_cad.composite.response import mean_strains
+from fabric_cad.composite.homogenisation.periodicity import PeriodicMesh
+from fabric_cad.composite.homogenisation.response import mean_strains
 from fabric_cad.composite.transverse import (
     TransverselyIsotropic,
     expansion_strain,
@@ -257,7 +257,7 @@ def test_faces_that_do_not_match_are_told():
 
 
 def test_a_solver_that_does_not_converge_gives_nothing(monkeypatch):
-    from fabric_cad.composite import response
+    from fabric_cad.composite.homogenisation import response
 
     patient = response.solve
     monkeypatch.setattr(response, "solve", lambda *given: patient(*given, most=3))

@@ -11,7 +11,7 @@ from ..weave.bodies import BodyKind
 from ..yarn.swept import swept_yarns
 from .constituents import Constituents
 from .fibres import FibreSections, fibre_fractions
-from .homogenise import Materials
+from .homogenisation.homogenise import Materials
 from .micromechanics import YarnProperties, yarn_properties
 from .transverse import expansion_strain, second_order
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..support.errors import BuildError
+from ...support.errors import BuildError
 
 _NEAR = 1e-7  # of a period: nodes nearer than this to a face, or to each other's image, are on it
 

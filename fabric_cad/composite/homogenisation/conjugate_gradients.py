@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..support.errors import SolverError
+from ...support.errors import SolverError
 from .preconditioners import Operator
 
 TOLERANCE = 1e-7

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..transverse import FIRST, SECOND
 from .assembly import VOIGT, Integrals, assemble, elastic_coefficients, forces
 from .conjugate_gradients import solve
 from .elements import Elements
 from .preconditioners import Operator, block_jacobi, product, vertical_lines
-from .transverse import FIRST, SECOND
 
 
 @dataclass(frozen=True, eq=False)

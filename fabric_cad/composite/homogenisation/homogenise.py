@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..transverse import ENGINEERING
 from .elements import Elements
 from .periodicity import PeriodicMesh
 from .response import Response, conduction_response, elastic_response, work_of_stress
-from .transverse import ENGINEERING
 
 UNIT_STRAINS = np.stack([np.eye(6), np.zeros((6, 6))])
 """The six load cases (2, 6, 6): one unit of xx, yy, zz, yz, xz, xy each, shear as engineering strain."""

@@ -1,0 +1,1 @@
+"""What a periodic cell of hexahedra is like from far away."""
