@@ -31,7 +31,7 @@ SWEEPS = ("exact", "multisection")
 """The exact skin of the model, or CadQuery's own sweep through the same wires.
 
 In a weft of the row ``plain`` points of the exact skin lie up to 0.062 mm outside the multisection
-sweep (nine a patch, tests/test_masters.py).
+sweep (nine a patch, tests/masters/test_masters.py).
 """
 
 Sections = Callable[[SweptYarn, int], Section]

@@ -38,9 +38,7 @@ def mesh_cell(
 
     with gmsh_session() as gmsh:
         try:
-            gmsh.option.setNumber("Geometry.OCCBoundsUseStl", 0)
-            gmsh.merge(str(step))
-            _mesh(gmsh, _yarns(gmsh, Path(step), fabric, options))
+            _mesh(gmsh, Path(step), fabric, options)
             _write(gmsh, Path(msh))
         except BuildError:
             raise
@@ -51,8 +49,10 @@ def mesh_cell(
             raise BuildError(f"gmsh: {str(error) or 'no reason given'}") from error
 
 
-def _yarns(gmsh: Any, step: Path, fabric: SolvedFabric, options: MeshOptions) -> list[YarnFaces]:
-    """The yarns of the STEP that gmsh has read, as planned."""
+def _planned(gmsh: Any, step: Path, fabric: SolvedFabric, options: MeshOptions) -> list[YarnFaces]:
+    """The yarns of the STEP, as planned."""
+    gmsh.option.setNumber("Geometry.OCCBoundsUseStl", 0)
+    gmsh.merge(str(step))
     entities = gmsh.model.getEntities(3)
     solids = {gmsh.model.getEntityName(3, tag).split("/")[-1]: tag for _, tag in entities}
     plans = plan_yarns(fabric, yarns_of(fabric.weave.interlacement()), options)
@@ -63,7 +63,8 @@ def _yarns(gmsh: Any, step: Path, fabric: SolvedFabric, options: MeshOptions) ->
     return [classified(gmsh, plan, lattice, solids[plan.yarn.name]) for plan in plans]
 
 
-def _mesh(gmsh: Any, yarns: list[YarnFaces]) -> None:
+def _mesh(gmsh: Any, step: Path, fabric: SolvedFabric, options: MeshOptions) -> None:
+    yarns = _planned(gmsh, step, fabric, options)
     edges = [yarn.edges(gmsh) for yarn in yarns]
     for yarn, curves in zip(yarns, edges):
         set_transfinite(gmsh, yarn, curves)
