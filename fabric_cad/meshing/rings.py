@@ -29,7 +29,7 @@ Strips = Mapping[str, tuple[np.ndarray, np.ndarray]]
 
 @dataclass(frozen=True, eq=False)
 class Span:
-    """Layers between two control planes: the planes' sections and the layers' shares, 0 to 1, of the way."""
+    """Layers between two control planes: the planes' sections and the layers' shares of the way."""
 
     first: Section
     second: Section
@@ -41,7 +41,8 @@ class Span:
         if self.first is self.second:
             return self.shares[:1]
         last = len(self.shares) - 1
-        return self.shares[np.unique(np.linspace(0, last, min(last, _STATIONS) + 1).round().astype(int))]
+        layers = np.linspace(0, last, min(last, _STATIONS) + 1).round().astype(int)
+        return self.shares[np.unique(layers)]
 
 
 def fill_rings(

@@ -103,10 +103,16 @@ def _step(residuals: np.ndarray, rates: np.ndarray, damping: np.ndarray) -> np.n
 
 
 def _residuals(cells: _Cells, nodes: np.ndarray, sharp: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Residuals (sections, residuals), infinite where a cell is folded, and their rates (..., 2 modes)."""
+    """Residuals (sections, residuals) and their rates (..., 2 modes).
+
+    Residuals are infinite where a cell is folded.
+    """
     here, ahead, opposite, behind = cells.corners
-    to_ahead, to_behind = _Edge.between(cells, nodes, here, ahead), _Edge.between(cells, nodes, here, behind)
-    area = to_ahead.vector[..., 0] * to_behind.vector[..., 1] - to_ahead.vector[..., 1] * to_behind.vector[..., 0]
+    to_ahead = _Edge.between(cells, nodes, here, ahead)
+    to_behind = _Edge.between(cells, nodes, here, behind)
+
+    (x_ahead, y_ahead), (x_behind, y_behind) = (np.moveaxis(edge.vector, -1, 0) for edge in (to_ahead, to_behind))
+    area = x_ahead * y_behind - y_ahead * x_behind
     angle = np.arctan2(area, (to_ahead.vector * to_behind.vector).sum(axis=-1))
     folded = (area <= 0).any(axis=1)
 
@@ -123,12 +129,16 @@ def _residuals(cells: _Cells, nodes: np.ndarray, sharp: bool) -> tuple[np.ndarra
     uneven = weight * np.log(one.square / other.square) / 2
     residuals = np.concatenate([crooked, uneven], axis=1)
     residuals[folded] = np.inf
-    return residuals, np.concatenate([turning, weight * (one.stretching() - other.stretching())], axis=1)
+    stretching = weight * (one.stretching() - other.stretching())
+    return residuals, np.concatenate([turning, stretching], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class _Edge:
-    """Edges as vectors (sections, edges, 2), their squared lengths and how they follow the modes (edges, modes)."""
+    """Edges as vectors (sections, edges, 2), and their squared lengths.
+
+    ``shapes`` (edges, modes) are how they follow the modes.
+    """
 
     vector: np.ndarray
     square: np.ndarray

@@ -82,7 +82,10 @@ def _shown(mesh: Mesh, hide: Collection[str]) -> list[Body]:
 
 
 def _add_field(plotter, skin, field: np.ndarray, label: str, limits: tuple[float, float] | None) -> None:
-    """The skin coloured by a nodal field, grey where a corner of a face has no value, and the bar of its colours."""
+    """The skin coloured by a nodal field, and the bar of its colours.
+
+    A face is grey where one of its corners has no value.
+    """
     values = field[skin.point_data["node"]]
     known = np.isfinite(values)[skin.regular_faces].all(axis=1)
     if limits is None:
@@ -97,13 +100,23 @@ def _add_field(plotter, skin, field: np.ndarray, label: str, limits: tuple[float
         part = _part(skin, known)
         part.point_data["field"] = field[part.point_data["node"]]
         colours = "coolwarm" if np.isclose(low, -high) else "viridis"
-        plotter.add_mesh(part, scalars="field", cmap=colours, clim=(low, high), show_scalar_bar=False, **_MATT)
+        plotter.add_mesh(
+            part,
+            scalars="field",
+            cmap=colours,
+            clim=(low, high),
+            show_scalar_bar=False,
+            **_MATT,
+        )
         inside = f"from {np.nanmin(values):.3g} to {np.nanmax(values):.3g} in all"
         plotter.add_scalar_bar(title=f"{label}; {inside}\n", n_labels=steps + 1, **_BAR)
 
 
 def _most(values: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    """Two values between which lies the share _SHOWN of a picture; ``values`` (faces, 4), ``pixels`` (faces,)."""
+    """Two values between which lies the share _SHOWN of a picture.
+
+    ``values`` (faces, 4) at the corners, ``pixels`` (faces,) that each covers.
+    """
     seen = pixels > 0
     if not seen.any():
         return values[np.isfinite(values)]
@@ -115,7 +128,10 @@ def _most(values: np.ndarray, pixels: np.ndarray) -> np.ndarray:
 
 
 def _pixels(plotter, skin) -> np.ndarray:
-    """How many pixels of every face (faces,) a scene's camera sees: the faces are painted in a colour each."""
+    """How many pixels of every face (faces,) a scene's camera sees.
+
+    The faces are painted in a colour each.
+    """
     numbers = np.arange(skin.n_cells)
     painted = skin.copy()
     painted.cell_data["number"] = np.stack([numbers >> 16, numbers >> 8, numbers], axis=1).astype(np.uint8)
@@ -130,8 +146,8 @@ def _pixels(plotter, skin) -> np.ndarray:
     finally:
         finder.close()
 
-    found = (image[..., 0] << 16) + (image[..., 1] << 8) + image[..., 2]
-    return np.bincount(found[found != _NOTHING], minlength=skin.n_cells)[: skin.n_cells]
+    seen = (image[..., 0] << 16) + (image[..., 1] << 8) + image[..., 2]
+    return np.bincount(seen[seen != _NOTHING], minlength=skin.n_cells)[: skin.n_cells]
 
 
 def _part(skin, faces: np.ndarray):

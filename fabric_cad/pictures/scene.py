@@ -1,4 +1,4 @@
-"""The scene every picture of a cell shares: yarns, their lines, light, camera, scale bar and title."""
+"""The scene every picture of a cell shares: yarns, lines, light, camera, scale bar and title."""
 
 from __future__ import annotations
 
@@ -22,7 +22,13 @@ SIZE = (1600, 1200)
 EDGE = "#202020"
 TEXT = {"font": "arial", "font_size": 16, "color": EDGE}
 
-_GLOSS = {"smooth_shading": True, "ambient": 0.32, "diffuse": 0.75, "specular": 0.15, "specular_power": 20}
+_GLOSS = {
+    "smooth_shading": True,
+    "ambient": 0.32,
+    "diffuse": 0.75,
+    "specular": 0.15,
+    "specular_power": 20,
+}
 _TOWARDS = np.array([-0.75, -1.5, 1.35]) / np.linalg.norm([-0.75, -1.5, 1.35])  # from the cell to the eye
 _RIGHT = np.cross([0.0, 0.0, 1.0], _TOWARDS) / np.linalg.norm(np.cross([0.0, 0.0, 1.0], _TOWARDS))
 _UP = np.cross(_TOWARDS, _RIGHT)
@@ -73,12 +79,16 @@ def light(plotter, points: np.ndarray) -> None:
     extent = np.ptp(points, axis=0).max()
     for place, strength in _LIGHTS:
         position = centre + extent * np.array(place)
-        plotter.add_light(pyvista().Light(position=position, focal_point=centre, intensity=strength))
+        lamp = pyvista().Light(position=position, focal_point=centre, intensity=strength)
+        plotter.add_light(lamp)
 
 
 @dataclass(frozen=True)
 class ScaleBar:
-    """Two arms of one length (mm) along x and y from a ``corner`` (3,) left of a cell and in its lower plane."""
+    """Two arms of one length (mm) along x and y.
+
+    They start from a ``corner`` (3,) left of a cell and in its lower plane.
+    """
 
     corner: np.ndarray
     length: float
@@ -95,7 +105,7 @@ class ScaleBar:
 
 
 def scale_bar(points: np.ndarray) -> ScaleBar:
-    """The bar of a round length, up to a fifth of a cell, beside its corner at the least x and y."""
+    """The bar of a round length, up to a fifth of a cell, beside its corner at least x and y."""
     extent = float(np.sqrt(np.prod(np.ptp(points[:, :2], axis=0))))
     power = 10.0 ** np.floor(np.log10(extent / 5))
     length = max(step * power for step in (1, 2, 5) if step * power <= extent / 5)
@@ -104,7 +114,10 @@ def scale_bar(points: np.ndarray) -> ScaleBar:
 
 
 def finish(plotter, points: np.ndarray, title: str = "", below: float = 0.0) -> None:
-    """Light, scale bar, title and camera for what lies at ``points``, over the share ``below`` of the height."""
+    """Light, scale bar, title and camera for what lies at ``points`` (points, 3), mm.
+
+    The share ``below`` of the picture's height stays free under it.
+    """
     light(plotter, points)
     bar = scale_bar(points)
     add_lines(plotter, np.array([[0, 1], [1, 2]]), bar.points, line_width=5)
@@ -123,11 +136,15 @@ def finish(plotter, points: np.ndarray, title: str = "", below: float = 0.0) -> 
     )
     if title:
         plotter.add_text(title, position=(0.03, 0.945), viewport=True, **TEXT)
-    _frame(plotter, np.vstack([points, bar.points, bar.label_place]), _ABOVE if title else 0.0, below)
+    shown = np.vstack([points, bar.points, bar.label_place])
+    _frame(plotter, shown, _ABOVE if title else 0.0, below)
 
 
 def _frame(plotter, points: np.ndarray, above: float, below: float) -> None:
-    """Look at points from the front left and above, just filling the picture between two shares of its height."""
+    """Look at points from the front left and above.
+
+    They just fill the picture between two shares of its height.
+    """
     seen = points @ np.column_stack([_RIGHT, _UP])
     low, high = seen.min(axis=0), seen.max(axis=0)
     width, height = high - low
@@ -149,7 +166,8 @@ def _frame(plotter, points: np.ndarray, above: float, below: float) -> None:
 def offscreen() -> None:
     """Draw without a display where there is none."""
     if not os.environ.get("DISPLAY"):
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # no noise about a missing X server
+        # no noise about a missing X server
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 
 def save(plotter, path: str | Path) -> None:

@@ -28,7 +28,10 @@ CREASE_DEGREES = 60
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """``quads`` (faces, 4) and ``lines`` (edges, 2) of mesh nodes; ``patch`` (faces,) numbers smooth patches."""
+    """``quads`` (faces, 4) and ``lines`` (edges, 2) of mesh nodes.
+
+    ``patch`` (faces,) numbers smooth patches.
+    """
 
     quads: np.ndarray
     patch: np.ndarray
@@ -36,7 +39,10 @@ class Skin:
 
 
 def skin_of(mesh: Mesh, yarns: Iterable[Body]) -> Skin:
-    """The skin of some yarns; creases are those of the mesh as it is, so that they do not depend on a load."""
+    """The skin of some yarns.
+
+    Creases are those of the mesh as it is, so that they do not depend on a load.
+    """
     wanted = set(yarns)
     chosen = {surface: quads for surface, quads in mesh.surfaces.items() if surface.body in wanted}
     quads = np.vstack(list(chosen.values()))
@@ -54,7 +60,10 @@ def skin_of(mesh: Mesh, yarns: Iterable[Body]) -> Skin:
 
 
 def _shared_edges(quads: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Edges (edges, 2) of two faces, smaller node first, both faces, and whether they run through it the same way."""
+    """Edges (edges, 2) of two faces, smaller node first, and both faces.
+
+    And whether both run through it the same way.
+    """
     ways = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)
     edges = np.sort(ways, axis=1)
     faces = np.repeat(np.arange(len(quads)), 4)

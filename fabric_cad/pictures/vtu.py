@@ -11,9 +11,10 @@ from ..support.vtk import grid_writer
 
 
 def write_vtu(mesh: Mesh, quality: Quality, path: str | Path) -> None:
-    """Write the mesh for ParaView with yarn number (from 1), direction (0 weft, 1 warp), fibre axis and quality.
+    """Write the mesh for ParaView.
 
-    Of the quality: ``scaled_jacobian``, ``opposite_edge_ratio``, ``least_angle`` (deg) and ``aspect``.
+    Cell data are the yarn's number (from 1), direction (0 weft, 1 warp), fibre axis and, of the
+    quality, ``scaled_jacobian``, ``opposite_edge_ratio``, ``least_angle`` (deg) and ``aspect``.
     Raises OSError where the file cannot be written whole.
     """
     grid = described(mesh)
