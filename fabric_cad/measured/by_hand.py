@@ -72,11 +72,11 @@ def _text(family: str, column: str, value: object) -> str:
             raise TypeError(f"expected a text, got {type(value).__name__} {value!r:.60}")
         return value.strip()
 
-    kind = Integral if column in WEAVE_COLUMNS[family] else Real
-    if isinstance(value, bool) or not isinstance(value, kind):
-        word = "a whole number" if kind is Integral else "a number"
+    whole = column in WEAVE_COLUMNS[family]
+    if isinstance(value, bool) or not isinstance(value, Integral if whole else Real):
+        word = "a whole number" if whole else "a number"
         raise TypeError(f"expected {word}, got {type(value).__name__} {value!r:.60}")
-    if kind is Integral:
+    if isinstance(value, Integral) and whole:
         return str(int(value))
     try:
         return repr(float(value))

@@ -32,7 +32,7 @@ class Entry:
     """What stands behind a key's ``=``, without spaces at its ends, and its line in the file."""
 
     text: str
-    line: int
+    line: int | None
 
 
 @dataclass(frozen=True)

@@ -75,7 +75,7 @@ class Family:
         """What is wrong with the refused row of that name; capitals make no difference, as for files."""
         return [problem for problem in self.refused if (problem.row or "").lower() == name.lower()]
 
-    def take(self, rows: Sequence[int]) -> Family:
+    def take(self, rows: Sequence[int] | np.ndarray) -> Family:
         """The table of the rows with these numbers, in this order."""
 
         def taken(part):
@@ -103,7 +103,7 @@ class Family:
         return self.place.problem(message, self.lines[row], column, self.names[row])
 
 
-def expect_row(row: object, name: str = "row") -> None:
+def expect_row(row: Family, name: str = "row") -> None:
     """Raise :class:`ArgumentError` where an argument is no table of one row."""
     expect(row, Family, name, " of one row (table['name'] gives one)")
     if len(row) != 1:

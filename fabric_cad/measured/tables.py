@@ -93,23 +93,23 @@ def read_families(folder: str | Path, partial: bool = False) -> dict[str, Family
 
 def _without_shared_names(tables: Mapping[str, Family | InputError]) -> dict[str, Family | InputError]:
     """The tables with the rows refused whose name another table has too."""
+    readable = {family: table for family, table in tables.items() if isinstance(table, Family)}
     users: dict[str, list[tuple[str, int]]] = {}
-    for family, table in tables.items():
-        if isinstance(table, Family):
-            for row, name in enumerate(table.names):
-                users.setdefault(name.lower(), []).append((family, row))
+    for family, table in readable.items():
+        for row, name in enumerate(table.names):
+            users.setdefault(name.lower(), []).append((family, row))
 
     shared: dict[str, dict[int, Problem]] = {}
     for rows in users.values():
         for family, row in rows if len(rows) > 1 else ():
-            others = (tables[other].problem(number, "name", "") for other, number in rows if other != family)
+            others = (readable[other].problem(number, "name", "") for other, number in rows if other != family)
             where = ", ".join(problem.where for problem in others)
-            problem = tables[family].problem(row, "name", f"this row name is also at {where}")
+            problem = readable[family].problem(row, "name", f"this row name is also at {where}")
             shared.setdefault(family, {})[row] = problem
 
     kept = dict(tables)
     for family, problems in shared.items():
-        table = tables[family]
+        table = readable[family]
         part = table.take([row for row in range(len(table)) if row not in problems])
         kept[family] = replace(part, refused=(*table.refused, *problems.values()))
     return kept

@@ -34,7 +34,7 @@ class MeshOptions:
 
     def __post_init__(self) -> None:
         for name, least in (("across", 1), ("crossing", 1), ("through", 1), ("gap", 2)):
-            value = getattr(self, name)
+            value: int = getattr(self, name)
             if not isinstance(value, Integral):
                 raise InputError(Problem(f"{value!r} is not a whole number", column=name))
             if value > MOST:
@@ -89,8 +89,8 @@ def mesh_options(
     """
     mesh = section_mesh(fabric.form)
     default = MeshOptions(through=mesh.usual_through)
-    given = {"across": across, "crossing": crossing, "through": through, "gap": gap}
-    given = {name: value for name, value in given.items() if value is not None}
+    asked_for = {"across": across, "crossing": crossing, "through": through, "gap": gap}
+    given = {name: value for name, value in asked_for.items() if value is not None}
     if size is not None:
         asked = MeshOptions(**(_sized(fabric, size, given) | given))
         asked.check(fabric, dict.fromkeys(_DEFAULTS.keys() - given.keys(), "size"))

@@ -15,8 +15,10 @@ from .rings import Span, fill_rings
 from .section_mesh import Around, Outline, SectionMesh, StripNodes, mesh_form
 
 if TYPE_CHECKING:
+    from ..weave.weaves import Yarn
     from .options import MeshOptions
     from .plan import Plan
+    from .templates import Template
 
 
 class RoundMesh(SectionMesh):
@@ -55,7 +57,7 @@ class RoundMesh(SectionMesh):
 
     def completed(self, plans: list[Plan], options: MeshOptions) -> list[Plan]:
         """The plans with one ring for all yarns of a direction, smoothed section by section."""
-        rings = {}
+        rings: dict[Yarn, tuple[Template, np.ndarray]] = {}
         for direction, across in zip(DIRECTIONS, (options.across, options.crossing)):
             alike = [plan for plan in plans if plan.yarn.direction == direction]
             spans = [list(map(Span, plan.sections, plan.sections[1:], plan.layers)) for plan in alike]

@@ -100,7 +100,7 @@ RULES: dict[tuple[int, ...], _Rule] = {
 BOUNDED = ((0, 1, 4), (2, 3, 4), (0, 2, 4), (1, 3, 4))
 """Sets in which the sum of the first two is the least fabric thickness there is."""
 
-ALONE = {(0, 2, 4): "warp", (1, 3, 4): "weft"}
+ALONE: dict[tuple[int, ...], str] = {(0, 2, 4): "warp", (1, 3, 4): "weft"}
 """Sets that tell of one direction only where that one reaches the fabric's faces: then (15)
 repeats what crimp and thickness say, and the other direction is left open."""
 

@@ -31,8 +31,8 @@ def between_side(form: Form, between: BetweenValues) -> tuple[np.ndarray, np.nda
 
 @free_side.register
 def _(form: Edged, contact: ContactValues, turns: tuple[bool, bool]) -> np.ndarray:
-    rises = [turn * contact.edge_rise for turn in turns]
-    q, v0 = free_parabola(contact.thickness, contact.width, *rises, contact.lateral_height)
+    left, right = (turn * contact.edge_rise for turn in turns)
+    q, v0 = free_parabola(contact.thickness, contact.width, left, right, contact.lateral_height)
     return np.array([q, v0, -contact.free_half_chord, contact.free_half_chord])
 
 

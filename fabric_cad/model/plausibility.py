@@ -84,7 +84,7 @@ def implausible(table: Family, columns: Mapping[str, Sequence]) -> list[Problem]
             column = responsible(d, columns["identified_by"][row].split())
             told.append(table.problem(row, column, _steep(d, crimps[row], slopes[row], column)))
         warned |= large
-    return sorted(told, key=lambda problem: problem.line)
+    return sorted(told, key=lambda problem: problem.line or 0)
 
 
 def _steep(direction: str, crimp: float, slope: float, column: str) -> str:

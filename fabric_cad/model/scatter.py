@@ -164,7 +164,7 @@ def _identified_at(table: Family, name: str, values: np.ndarray, columns) -> tup
 
     Rows that are no fabric with it are NaN; second, why, by row number.
     """
-    moved = replace(table, measured=table.measured | {name: values})
+    moved = replace(table, measured={**table.measured, name: values})
     refused = _out_of_bounds(moved, name)
     numbers = np.full((len(columns), len(table)), np.nan)
     good = [at for at in range(len(table)) if at not in refused]

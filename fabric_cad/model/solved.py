@@ -20,9 +20,10 @@ one of the line above, or that of a ``flat`` contact, which is the crossings' ow
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ..measured.columns import FLOAT_GAPS
 from ..section.forms import FORMS, Form
@@ -127,60 +128,77 @@ class SolvedFabric:
     @classmethod
     def from_row(cls, row: Mapping[str, object]) -> SolvedFabric:
         """A fabric from one row of a solved table, cells as text or numbers. Raises KeyError, ValueError."""
-
-        def number(column: str) -> float:
-            value = row[column]
-            return number_of(value) if isinstance(value, str) else float(value)
-
-        parabolas = {
-            "weft": {"low": abs(number("p11")), "high": abs(number("p12"))},
-            "warp": {"high": abs(number("p21")), "low": abs(number("p22"))},
-        }
-
-        def direction(name: str, crossed: str) -> Direction:
-            contact = {
-                plateau: ContactSide(
-                    p=parabolas[crossed][other],
-                    offset=number(f"{name}_{plateau}_offset_mm"),
-                    half_chord=number(f"{name}_{plateau}_chord_mm") / 2,
-                )
-                for plateau, other in (("low", "high"), ("high", "low"))
-            }
-            free_sides = {
-                (plateau, kind): FreeSide(*(number(f"{name}_{plateau}_{kind}_{key}") for key in _FREE_SIDE))
-                for plateau in PLATEAUX
-                for kind in KINDS
-            }
-            end = number(f"{name}_between_end_mm")
-            return Direction(
-                **{key.removesuffix("_mm"): number(f"{name}_{key}") for key in _SCALARS},
-                p_low=parabolas[name]["low"],
-                p_high=parabolas[name]["high"],
-                points=tuple((number(along), number(height)) for _, along, height in point_columns(name)),
-                contact=contact,
-                free_sides=free_sides,
-                between=FreeSide(number(f"{name}_between_q"), 0.0, -end, end),
-            )
-
-        float_gap = str(row.get("float_gap") or FLOAT_GAPS[0])  # tables written before it have no such column
-        if float_gap not in FLOAT_GAPS:
-            raise ValueError(f"float_gap: {float_gap!r} is none of {', '.join(FLOAT_GAPS)}")
+        cells = _Cells(row)
+        over, under, step = (whole(cells.text(column)) for column in ("over", "under", "step"))
         return cls(
-            name=str(row["name"]),
-            family=str(row["family"]),
-            weave=Weave(*(whole(str(row[key])) for key in _FLOATS), tuple(str(row["pattern"]).split())),
-            section=str(row["section"]),
-            lateral_height=number("lateral_height_mm"),
-            float_gap=float_gap,
-            fabric_thickness=number("fabric_thickness_mm"),
-            weft=direction("weft", "warp"),
-            warp=direction("warp", "weft"),
+            name=cells.text("name"),
+            family=cells.text("family"),
+            weave=Weave(over, under, step, tuple(cells.text("pattern").split())),
+            section=cells.one_of("section", FORMS),
+            lateral_height=cells.number("lateral_height_mm"),
+            float_gap=cells.one_of("float_gap", FLOAT_GAPS, default=FLOAT_GAPS[0]),  # older tables have none
+            fabric_thickness=cells.number("fabric_thickness_mm"),
+            weft=cells.direction("weft", "warp"),
+            warp=cells.direction("warp", "weft"),
         )
 
 
-_FLOATS = ("over", "under", "step")
 _FREE_SIDE = ("q", "v0_mm", "left_mm", "right_mm")
-_SCALARS = ("crossed_spacing_mm", "width_mm", "thickness_mm", "crimp", "slope", "amplitude_mm")
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """One row of a solved table, read as a fabric's parts."""
+
+    row: Mapping[str, Any]
+
+    def text(self, column: str) -> str:
+        return str(self.row[column])
+
+    def number(self, column: str) -> float:
+        value = self.row[column]
+        return number_of(value) if isinstance(value, str) else float(value)
+
+    def one_of(self, column: str, choices: Collection[str], default: str = "") -> str:
+        word = str(self.row.get(column) or default) if default else self.text(column)
+        if word not in choices:
+            raise ValueError(f"{column}: {word!r} is none of {', '.join(choices)}")
+        return word
+
+    def parabola(self, direction: str, plateau: str) -> float:
+        """p at a plateau, without its sign, 1/mm: the weft starts on the low one, the warp on the high one."""
+        first = "low" if direction == "weft" else "high"
+        return abs(self.number(f"p{1 if direction == 'weft' else 2}{1 if plateau == first else 2}"))
+
+    def contact(self, direction: str, crossed: str, plateau: str) -> ContactSide:
+        """What a direction touches with at a plateau is the trajectory of the yarns it crosses at their other one."""
+        return ContactSide(
+            p=self.parabola(crossed, "high" if plateau == "low" else "low"),
+            offset=self.number(f"{direction}_{plateau}_offset_mm"),
+            half_chord=self.number(f"{direction}_{plateau}_chord_mm") / 2,
+        )
+
+    def free_side(self, direction: str, plateau: str, kind: str) -> FreeSide:
+        q, v0, left, right = (self.number(f"{direction}_{plateau}_{kind}_{name}") for name in _FREE_SIDE)
+        return FreeSide(q, v0, left, right)
+
+    def direction(self, name: str, crossed: str) -> Direction:
+        """The parameters of the wefts or the warps."""
+        end = self.number(f"{name}_between_end_mm")
+        return Direction(
+            crossed_spacing=self.number(f"{name}_crossed_spacing_mm"),
+            width=self.number(f"{name}_width_mm"),
+            thickness=self.number(f"{name}_thickness_mm"),
+            crimp=self.number(f"{name}_crimp"),
+            slope=self.number(f"{name}_slope"),
+            amplitude=self.number(f"{name}_amplitude_mm"),
+            p_low=self.parabola(name, "low"),
+            p_high=self.parabola(name, "high"),
+            points=tuple((self.number(along), self.number(z)) for _, along, z in point_columns(name)),
+            contact={plateau: self.contact(name, crossed, plateau) for plateau in PLATEAUX},
+            free_sides={(plateau, kind): self.free_side(name, plateau, kind) for plateau in PLATEAUX for kind in KINDS},
+            between=FreeSide(self.number(f"{name}_between_q"), 0.0, -end, end),
+        )
 
 
 @dataclass(frozen=True)
