@@ -18,7 +18,7 @@ from fabrics import (
 from hypothesis import given, settings
 from matplotlib.figure import Figure
 from scipy.interpolate import BSpline
-from test_sweeps import fabric_of, patch_of, points, seeds
+from sweeps import fabric_of, patch_of, points, seeds
 
 from fabric_cad.cell.pipeline import make_cell
 from fabric_cad.measured.tables import FLOAT_GAPS

@@ -3,54 +3,22 @@
 import numpy as np
 import pytest
 from fabrics import TWILL32, flat_gaps, random_general_row, random_pattern_row, random_row, skin_of, table
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings
 from scipy.interpolate import BSpline
+from sweeps import fabric_of, patch_of, points, seeds
 
 from fabric_cad.model.identification import identify
 from fabric_cad.pictures.plots import section_outline
-from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import Weave, yarns_of
 from fabric_cad.yarn.planes import contact_segment
 from fabric_cad.yarn.swept import SweptYarn, swept_yarns
 
-seeds = st.integers(0, 2**32 - 1)
 DRAWS = {
     "standard": random_row,
     "general": random_general_row,
     "flat gaps": flat_gaps(random_pattern_row),
 }
 rows = pytest.mark.parametrize("draw", DRAWS.values(), ids=DRAWS)
-
-
-def fabric_of(draw, seed):
-    family, row = draw(np.random.default_rng(seed))
-    try:
-        return identify(table(family, row))[row["name"]]
-    except InputError:
-        assume(False)
-
-
-def points(patch, u, v, along=0):
-    """Points (t, v, z) of a patch on a grid of shares of its parameters, or their rate along t."""
-    homogeneous = patch.poles * np.where(np.arange(4) < 3, patch.poles[..., 3:], 1.0)
-    (ku, du), (kv, dv) = patch.along, patch.across
-    at = ku[0] + np.asarray(u) * (ku[-1] - ku[0])
-
-    def grid(order):
-        return BSpline(kv, BSpline(ku, homogeneous, du)(at, order).transpose(1, 0, 2), dv)(v).transpose(1, 0, 2)
-
-    found = grid(0)
-    place = found[..., :3] / found[..., 3:]
-    if not along:
-        return place
-    rate = grid(1)
-    tangent = (rate[..., :3] - place * rate[..., 3:]) / found[..., 3:]
-    return tangent / tangent[..., :1]
-
-
-def patch_of(surface, segment, side):
-    return next(patch for patch in surface.patches if (patch.segment, patch.side) == (segment, side))
 
 
 @rows
