@@ -26,6 +26,7 @@ LAYERS = (
     "composite",
     "simulation",
     "study",
+    "page",
     "cli",
 )
 """From the ground up: the paper's chain from a measured row to the cell under load."""

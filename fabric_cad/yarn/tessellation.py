@@ -28,6 +28,9 @@ from .skin import Patch, skin
 from .tiles import Grid, evaluated
 from .trajectory import trajectory
 
+Shapes = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Points and normals, each (tiles, points, 3), and triangles (triangles, 3)."""
+
 BITS = ("high", "turns_before", "turns_after", "turns_left", "turns_right")
 """What a tile depends on, from the lowest bit of its code."""
 
@@ -76,7 +79,7 @@ def tile_codes(interlacement: np.ndarray, direction: Direction) -> np.ndarray:
     )
 
 
-def tessellate(fabric: SolvedFabric, grid: Grid | None = None) -> tuple[TiledYarns, TiledYarns]:
+def tessellate(fabric: SolvedFabric, grid: Grid | None = None) -> tuple[TiledYarns, ...]:
     """All yarns of a fabric's cell as tiles, wefts first; ``grid`` says how fine (default: :class:`Grid`)."""
     grid = grid or Grid()
     return tuple(_tiled(fabric, direction, grid) for direction in DIRECTIONS)
@@ -96,21 +99,21 @@ def tile_patches(fabric: SolvedFabric, direction: Direction, code: int) -> tuple
 
 def _tiled(fabric: SolvedFabric, direction: Direction, grid: Grid) -> TiledYarns:
     codes = tile_codes(fabric.weave.interlacement(), direction)
-    used, tile = np.unique(codes, return_inverse=True)
-    tile = tile.reshape(codes.shape)
+    used = np.unique(codes)
+    tile = np.searchsorted(used, codes)
     shape = evaluated([tile_patches(fabric, direction, int(code)) for code in used], grid)
 
     along = fabric.directions[direction].crossed_spacing
     axis = (np.arange(len(codes)) + 0.5) * fabric.crossed(direction).crossed_spacing
     yarn, crossing = np.indices(codes.shape)
 
-    def tiling(shapes: tuple, tile: np.ndarray, crossing: np.ndarray, yarn: np.ndarray) -> Tiling:
+    def tiling(shapes: Shapes, tile: np.ndarray, crossing: np.ndarray, yarn: np.ndarray) -> Tiling:
         places = np.column_stack([crossing * along, axis[yarn], np.zeros(yarn.size)])
         return Tiling(*_turned(direction, *shapes), tile, _in_plan(direction, places), yarn)
 
     crossings = tile.ravel(), crossing.ravel(), yarn.ravel()
-    ends = [0, -1] * np.ones((len(codes), 1), dtype=int)  # the first crossing's start, the last one's end
-    number, end = (each.T.ravel() for each in np.broadcast_arrays(np.arange(len(codes))[:, None], ends))
+    number = np.tile(np.arange(len(codes)), 2)
+    end = np.repeat([0, -1], len(codes))  # the first crossing's start, the last one's end
     capped = tile[number, end] + np.where(end == 0, 0, len(used))
     return TiledYarns(
         direction,
@@ -124,7 +127,7 @@ def _in_plan(direction: Direction, vectors: np.ndarray) -> np.ndarray:
     return vectors if direction is Direction.WEFT else np.ascontiguousarray(vectors[..., [1, 0, 2]])
 
 
-def _turned(direction: Direction, points: np.ndarray, normals: np.ndarray, triangles: np.ndarray) -> tuple:
+def _turned(direction: Direction, points: np.ndarray, normals: np.ndarray, triangles: np.ndarray) -> Shapes:
     """Tiles in plan: x and y exchanged for warps is a reflection, so that their triangles turn round."""
     if direction is Direction.WARP:
         triangles = np.ascontiguousarray(triangles[:, ::-1])

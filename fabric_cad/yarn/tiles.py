@@ -102,7 +102,7 @@ def evaluated(tiles: Sequence[Sequence[Patch]], grid: Grid) -> Tiles:
             segments[members[0].patch.segment],
         )
         own = rows[side][first : first + intervals + 1].ravel()
-        numbers = [member.tile for member in members]
+        numbers = np.array([member.tile for member in members])
         place, normal = _surface([member.patch for member in members], intervals, across[side])
         points[np.ix_(numbers, own)], normals[np.ix_(numbers, own)] = (
             place,
