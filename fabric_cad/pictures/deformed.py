@@ -9,7 +9,7 @@ import numpy as np
 
 from ..meshing.mesh import Mesh
 from ..support.arrays import checked
-from ..weave.bodies import Body
+from ..weave.bodies import YarnBody
 from .limits import limits_of
 from .scene import EDGE, SIZE, add_lines, add_yarns, finish, new_scene, offscreen, save, surface
 from .skin import skin_of
@@ -72,7 +72,7 @@ def draw_deformed(
     save(plotter, path)
 
 
-def _shown(mesh: Mesh, hide: Collection[str]) -> list[Body]:
+def _shown(mesh: Mesh, hide: Collection[str]) -> list[YarnBody]:
     """The yarns that are not hidden. Raises ValueError where a hidden one is none, or all are."""
     if unknown := set(hide) - {yarn.name for yarn in mesh.yarns}:
         raise ValueError(f"no yarn is called {', '.join(sorted(unknown))}")

@@ -34,14 +34,21 @@ class State:
     facts: Mapping[str, float | str] = field(default_factory=dict)
 
 
-def write_series(mesh: Mesh, states: Iterable[State], path: str | Path, units: Mapping[str, str]) -> list[Path]:
-    """Write every state at its *deformed* points, and ``path`` (``.pvd``) that names them; all files written.
+def write_series(
+    mesh: Mesh,
+    states: Iterable[State],
+    path: str | Path,
+    units: Mapping[str, str],
+) -> list[Path]:
+    """Write every state at its *deformed* points, and ``path`` (``.pvd``) that names them.
+
+    Returns all files written.
 
     Each has the point vectors ``displacement`` (mm), which are active: points minus displacement is
     the cell at rest, and *Warp By Vector* with the factor n - 1 shows it n times larger. Cell data:
-    ``yarn`` (from 1), ``direction`` (0 weft, 1 warp), ``fibre_axis`` along the deformed fibres. Field data:
-    ``state`` (its label), ``yarn_names``, ``units`` (``name: unit`` of every array, from ``units``),
-    ``TimeValue`` and the state's facts. Raises ValueError where an array does not fit the
+    ``yarn`` (from 1), ``direction`` (0 weft, 1 warp), ``fibre_axis`` along the deformed fibres.
+    Field data: ``state`` (its label), ``yarn_names``, ``units`` (``name: unit`` of every array,
+    from ``units``), ``TimeValue`` and the state's facts. Raises ValueError where an array does not fit the
     mesh or has a name that is taken, OSError where a file cannot be written whole.
     """
     path = Path(path)
@@ -52,7 +59,8 @@ def write_series(mesh: Mesh, states: Iterable[State], path: str | Path, units: M
         file = path.with_name(f"{path.stem}_state_{number:0{digits}d}.vtu")
         write_grid(_state_grid(mesh, state, units), file)
         files.append(file)
-        entries.append(f'    <DataSet timestep="{state.time:.9g}" part="0" file={quoteattr(file.name)}/>')
+        place = f'timestep="{state.time:.9g}" part="0" file={quoteattr(file.name)}'
+        entries.append(f"    <DataSet {place}/>")
 
     head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
     path.write_text(head + "\n".join(entries) + "\n  </Collection>\n</VTKFile>\n", encoding="utf-8")
@@ -60,7 +68,8 @@ def write_series(mesh: Mesh, states: Iterable[State], path: str | Path, units: M
 
 
 def _state_grid(mesh: Mesh, state: State, units: Mapping[str, str]):
-    moved = replace(mesh, points=mesh.points + checked("displacement", state.displacement, mesh.points.shape))
+    displacement = checked("displacement", state.displacement, mesh.points.shape)
+    moved = replace(mesh, points=mesh.points + displacement)
     grid = pyvista_grid(moved)
     grid.point_data["displacement"] = np.asarray(state.displacement)
 
