@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from fabrics import TWILL32, random_general_row, random_row, table
+from reports import small_report
 
 from fabric_cad.cli import main
 from fabric_cad.meshing import mesher
@@ -118,8 +119,6 @@ def test_a_mesher_that_fails_says_why(monkeypatch, tmp_path, error, words):
 
 
 def test_the_command_foretells(here, capsys, monkeypatch):
-    from test_cli import _report
-
-    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda *_: _report())
+    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda *_: small_report())
     assert main(["cell", "twill32"]) == 0
     assert "  17600 hexahedra to make\n" in capsys.readouterr().err

@@ -10,13 +10,12 @@ import time
 from pathlib import Path
 
 import pytest
+from reports import HEADER, small_report
 
 from fabric_cad.cli import main
 from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.support import staging
 from fabric_cad.support.errors import BuildError, OutputError
-
-HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp"
 
 
 def run(*arguments, **options):
@@ -100,47 +99,13 @@ def test_help_is_the_manual(capsys):
 def test_a_row_of_a_sound_table_is_made_beside_a_wrong_one(here, capsys, monkeypatch):
     Path("families/twill.csv").write_text(f"{HEADER}\nbad,3,2,0.35,2.9,0.004\n")
     made = []
-    monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or _report())
+    monkeypatch.setattr(
+        "fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or small_report()
+    )
     assert main(["cell", "plain"]) == 0
     assert made == [("plain",)]
     assert "note, in a table this row is not of: families/twill.csv:2" in capsys.readouterr().err
     assert main(["cell", "bad"]) == 2
-
-
-def _report():
-    direction = dict.fromkeys(("crimp", "width_mm", "thickness_mm", "amplitude_mm", "slope"), 0.1)
-    return {
-        "row": "plain",
-        "family": "plain",
-        "section": "lenticular",
-        "float_gap": "symmetric",
-        "parameters": 3,
-        "weave": {"over": 1, "under": 1, "step": 1, "wefts": 2, "warps": 2},
-        "identified": {"weft": direction, "warp": direction},
-        "measured_vs_model": [],
-        "consistency": dict.fromkeys(
-            ("max_penetration_mm", "max_contact_gap_mm", "overlap_volume_mm3", "contact_area_mm2", "thickness_mm"), 0.0
-        ),
-        "volumes": {"yarn_mm3": 1.0, "cell_mm3": 2.0, "yarn_volume_fraction": 0.5},
-        "mesh": dict.fromkeys(
-            (
-                "nodes",
-                "hexahedra",
-                "contact_nodes",
-                "coincident_contact_nodes",
-                "min_scaled_jacobian",
-                "median_scaled_jacobian",
-                "scaled_jacobian_edges_allow",
-                "min_opposite_edge_ratio",
-                "min_corner_angle_deg",
-                "max_corner_angle_deg",
-                "max_aspect",
-            ),
-            1,
-        ),
-        "seconds": {},
-        "warnings": [],
-    }
 
 
 def test_cell_prints_a_table_and_paths_and_is_silent_when_asked(here):

@@ -60,7 +60,7 @@ def holding(tmp_path):
     """A study whose two workers are held up in C code, and the process numbers of those."""
     script = tmp_path / "hold.py"
     script.write_text(HOLD)
-    places = {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path])}
+    places = {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[1]), *sys.path])}
     study = subprocess.Popen([sys.executable, script, tmp_path], env=os.environ | places, start_new_session=True)
     noted = [tmp_path / f"unit_{number}" for number in range(2)]
     end = time.monotonic() + 60

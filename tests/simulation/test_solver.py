@@ -21,7 +21,7 @@ from fabric_cad.simulation.solver import find_solver, run_solver, step_periods
 from fabric_cad.support.errors import FabricCadError, InputError, SolverError
 from fabric_cad.support.staging import staged
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 def job(folder, text, name="job"):

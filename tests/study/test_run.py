@@ -341,7 +341,7 @@ def test_ctrl_c_leaves_a_study_that_goes_on(here):
 
 
 def test_the_example_of_the_documentation_runs(here):
-    page = (Path(__file__).parents[1] / "docs/studies.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs/studies.md").read_text(encoding="utf-8")
     (example,) = (part.split("```")[0] for part in page.split("```toml\n")[1:])
     counts = run_study(study(example))
     assert counts.done + counts.refused == 200 and counts.done > 100

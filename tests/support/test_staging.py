@@ -18,7 +18,7 @@ from fabric_cad.support import folders, locks, staging, working
 from fabric_cad.support.errors import OutputError
 from fabric_cad.support.interrupts import Stopped, stoppable, uninterrupted
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 posix = pytest.mark.skipif(os.name != "posix", reason="POSIX signals and links")
 
 

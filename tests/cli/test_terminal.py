@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_cli import HEADER, _report
+from reports import HEADER, small_report
 
 from fabric_cad.cli import main
 from fabric_cad.support import staging
@@ -39,7 +39,7 @@ def made(monkeypatch):
         if name == "twill22":
             raise BuildError("twill22: its yarns penetrate")
         names.append(name)
-        return _report() | {"row": name}
+        return small_report() | {"row": name}
 
     monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", make_cell)
     return names
