@@ -152,7 +152,7 @@ class Bench:
         code = (
             "import sys, time; from fabric_cad.study.definition import read_study\n"
             "from fabric_cad.study.design import DESIGNS; from fabric_cad.study.rows import study_rows\n"
-            "from fabric_cad.study.figures import identified_figures\n"
+            "from fabric_cad.study.table_figures import identified_figures\n"
             "from fabric_cad.model.identification import identify_rows\n"
             "study = read_study(sys.argv[1], sys.argv[2])\n"
             "samples = DESIGNS[study.design](study.factors, {}, study.samples, study.seed)\n"

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..meshing.mesh import Mesh
-from ..weave.bodies import Body, SurfaceKind
+from ..weave.bodies import Body, SurfaceKind, YarnBody
 from .isoparametric import distance_to_quads, inside_hexahedra
 
 KINDS = ("crossing", "parallel")
@@ -66,7 +66,8 @@ def penetration(mesh: Mesh, points: np.ndarray, period: np.ndarray | None = None
         _check("period", period, (2, 3))
     yarns = mesh.yarns
     bodies = [_Body(mesh, points, period, yarn) for yarn in yarns]
-    found, by_pair = Penetration(), {}
+    found = Penetration()
+    by_pair: dict[tuple[Body, Body], float] = {}
     for (i, one), (j, other) in product(enumerate(bodies), repeat=2):
         if i == j and period is None:
             continue
@@ -103,7 +104,7 @@ class _Body:
     the neighbouring cells included.
     """
 
-    def __init__(self, mesh: Mesh, points: np.ndarray, period: np.ndarray | None, yarn: Body) -> None:
+    def __init__(self, mesh: Mesh, points: np.ndarray, period: np.ndarray | None, yarn: YarnBody) -> None:
         self.direction = yarn.direction.axis
         quads = mesh.quads_of(yarn, SurfaceKind.CONTACT, SurfaceKind.FREE)
         edges = np.unique(np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)), axis=0)
@@ -167,10 +168,12 @@ def _inside(places: np.ndarray, body: _Body) -> np.ndarray:
 def _depths(places: np.ndarray, body: _Body) -> np.ndarray:
     """Distance (places,) of each place to the nearest face of a yarn's skin, mm."""
     skin = body.skin
-    nearest, _ = body.by_corner.query(places)
-    found = body.by_face.query_ball_point(places, nearest + np.linalg.norm(skin.half))
-    place = np.repeat(np.arange(len(places)), [len(each) for each in found])
-    face = np.concatenate([np.asarray(each, dtype=int) for each in found])
+    nearest = np.array(body.by_corner.query(places)[0])
+    reach = nearest + np.linalg.norm(skin.half)
+    near_faces = [np.array(faces, dtype=int) for faces in body.by_face.query_ball_point(places, reach)]
+    place = np.repeat(np.arange(len(places)), [len(faces) for faces in near_faces])
+    face = np.concatenate(near_faces)
+
     off = np.maximum(np.maximum(skin.low[face] - places[place], places[place] - skin.high[face]), 0.0)
     near = np.linalg.norm(off, axis=1) <= nearest[place]
     place, face = place[near], face[near]

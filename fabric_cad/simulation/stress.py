@@ -57,7 +57,8 @@ def yarn_stress(mesh: Mesh, displacement: np.ndarray, law: YarnLaw) -> YarnStres
     """
     stiffness = np.linalg.inv(law.compliance)
     shear = {(0, 1): law.G12_MPa, (0, 2): law.G13_MPa, (1, 2): law.G23_MPa}
-    volume, strain, stress = 0.0, 0.0, 0.0
+    count = len(mesh.hexahedra)
+    volume, strain, stress = np.zeros((count, 1, 1)), np.zeros((count, 3, 3)), np.zeros((count, 3, 3))
     for point in gauss_points(mesh, displacement):
         second = np.zeros_like(point.strain)
         second[:, [0, 1, 2], [0, 1, 2]] = np.einsum("eii->ei", point.strain) @ stiffness

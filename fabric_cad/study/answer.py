@@ -22,7 +22,7 @@ def answer_lines(design: str, rows: Sequence[Row]) -> list[str]:
     """A table of the rows of ``sensitivity.csv``: the factors of every figure, the one that matters most first."""
     if not rows:
         return []
-    table = [("", *_HEADS[design])]
+    table: list[tuple[str, ...]] = [("", *_HEADS[design])]
     for figure in dict.fromkeys(str(row["figure"]) for row in rows):
         ranked = sorted((row for row in rows if row["figure"] == figure), key=_weight, reverse=True)
         table.append((f"{figure} depends on",))

@@ -148,7 +148,7 @@ class _Reader:
             settings = read_settings(families, base.names[0])
         if base is not None and ("depth" in found or "depth" not in self.content):
             self.check_figures(figures, depth, settings)
-        if self.problems:
+        if self.problems or base is None or design is None:
             raise InputError(self.problems)
         return Study(
             name=self.path.stem,
@@ -230,6 +230,7 @@ class _Reader:
                 )
                 self.wrong(message, key, shown)
                 continue
+            factor: Factor | None
             if column in (*weave, *CHOICES):
                 factor = self.choice(base, column, value, key, shown)
             else:
@@ -288,9 +289,8 @@ class _Reader:
                 self.wrong(f"{name}: {quoted(each)} is not {_KINDS[int if name == 'steps' else float]}", key, shown)
         if len(self.problems) > before:
             return None
-        factor = self.uniform(base, column, given, key, shown) if kind == "uniform" else None
-        if kind == "normal":
-            factor = self.normal(base, column, given, key, shown)
+        read = self.uniform if kind == "uniform" else self.normal
+        factor: Factor | None = read(base, column, given, key, shown)
         if design == "grid" and len(self.problems) == before and not (given.get("steps") and kind == "uniform"):
             self.wrong("a grid takes a list, or a range with steps", key, shown)
         return factor if len(self.problems) == before else None
@@ -299,7 +299,7 @@ class _Reader:
         """What the column's bounds say of one value; the rest of its row is the unit's own business."""
         if not _is(value, float):
             self.wrong(f"{quoted(value)} is not a number", key, shown)
-        elif fault := bound_fault(column, value):
+        elif isinstance(value, (int, float)) and (fault := bound_fault(column, value)):
             self.wrong(fault, key, shown)
 
     def scatter(self, base: Family, column: str, key: str, shown: str) -> tuple[float, float] | None:
@@ -346,7 +346,7 @@ class _Reader:
             mean, std = mean or found[0], std or found[1]
         return Normal(float(mean), float(std))
 
-    def check_size(self, factors: Mapping[str, Factor], design: str, samples: int) -> None:
+    def check_size(self, factors: Mapping[str, Factor], design: str | None, samples: int) -> None:
         from .factors import levels
 
         if design == "grid":

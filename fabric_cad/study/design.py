@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -69,7 +70,7 @@ def sobol(factors: Mapping[str, Factor], base: Mapping[str, object], samples: in
         for k, name in enumerate(factors)
     }
     matrices = ["A", "B", *(f"AB {name}" for name in factors)]
-    labels = {
+    labels: dict[str, Sequence[Any]] = {
         "matrix": [matrix for matrix in matrices for _ in range(samples)],
         "sample": list(range(samples)) * len(matrices),
     }

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from typing import Protocol
+from typing import Any, Protocol
 
 from ..support.cores import cores
 from ..support.errors import FabricCadError, InputError
@@ -24,13 +24,13 @@ _GATHER = 60.0  # s within which a finished result must arrive
 class Workers(AbstractContextManager, Protocol):
     """Workers, each with a name, of which each takes one task at a time."""
 
-    def free(self) -> Iterable[Hashable]:
+    def free(self) -> Iterable[Any]:
         """Workers that have no task."""
 
-    def start(self, worker: Hashable, work: Callable, arguments: tuple) -> None:
+    def start(self, worker: Any, work: Callable, arguments: tuple) -> None:
         """Send a task to a free worker."""
 
-    def ended(self, seconds: float) -> list[tuple[Hashable, object]]:
+    def ended(self, seconds: float) -> Sequence[tuple[Any, object]]:
         """(worker, result) of tasks that ended, waited for at most so long; errors as results."""
 
 
@@ -48,7 +48,8 @@ def run_tasks(
     time, so that one that dies takes no other task with it, whatever the cluster does about its
     failures. Raises :class:`FabricCadError` where the scheduler cannot be reached or is lost.
     """
-    waiting, again = iter(tasks), []
+    waiting = iter(tasks)
+    again: list[tuple[str, tuple]] = []
     tries: dict[str, int] = {}
     crew: Workers = LocalWorkers(workers or cores()) if scheduler is None else ClusterWorkers(scheduler)
 
@@ -59,9 +60,10 @@ def run_tasks(
             for worker in crew.free():
                 task = again.pop() if again else next(waiting, None)
                 more = task is not None
-                if not more:
+                if task is None:
                     break
-                name, arguments = running[worker] = task
+                running[worker] = task
+                name, arguments = task
                 tries[name] = tries.get(name, 0) + 1
                 crew.start(worker, work, arguments)
 
@@ -101,7 +103,7 @@ class ClusterWorkers:
             ) from error
         except (OSError, ValueError) as error:
             raise InputError(f"--scheduler {scheduler}: no scheduler answers there") from error
-        self.futures: dict[str, object] = {}
+        self.futures: dict[str, Any] = {}
 
     def __enter__(self) -> ClusterWorkers:
         return self

@@ -38,7 +38,7 @@ class LocalWorkers:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for process, _ in self.processes.values():
+        for process, _pipe in self.processes.values():
             process.kill()
         for worker in list(self.processes):
             self._bury(worker)
@@ -62,10 +62,12 @@ class LocalWorkers:
         The result is an exception where the task raised one, ChildProcessError where its worker died.
         """
         pipes = {self.processes[worker][1]: worker for worker in self.busy}
-        results = []
+        results: list[tuple[int, object]] = []
 
-        for pipe in connection.wait(list(pipes), seconds):
-            worker = pipes[pipe]
+        ready = set(connection.wait(list(pipes), seconds))
+        for pipe, worker in pipes.items():
+            if pipe not in ready:
+                continue
             self.busy.discard(worker)
             try:
                 results.append((worker, pipe.recv()))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
-from ..measured.columns import MEASURED, WEAVE_COLUMNS, kept_column
+from ..measured.columns import CHOICES, MEASURED, WEAVE_COLUMNS, kept_column
 from ..measured.family import Family
 from ..measured.relations import out_of_bounds
 from ..support.errors import Problem
@@ -15,22 +16,24 @@ from ..weave.patterns import read_pattern, written
 from ..weave.weaves import Weave, weave_of
 from .design import Samples
 
-_FIELDS = {"section": "sections", "float_gap": "float_gaps", "thicker": "thicker"}
-"""Where a table keeps its columns of choices."""
+_KEPT = {field.name for field in fields(Family)}
+_FIELDS = {column: next(name for name in (column, f"{column}s") if name in _KEPT) for column in CHOICES}
+"""Where a table keeps its columns of choices: under their name, or its plural."""
 
 
-def weave_cells(base: Family) -> dict[str, object]:
+def weave_cells(base: Family) -> dict[str, Any]:
     """Weave columns of a table's first row with its values."""
     weave = base.weaves[0]
-    return {
+    cells: dict[str, dict[str, Any]] = {
         "plain": {},
         "twill": {"over": weave.over, "under": weave.under},
         "satin": {"harness": weave.warps, "step": weave.step},
         "pattern": {"pattern": written(weave.pattern)},
-    }[base.family]
+    }
+    return cells[base.family]
 
 
-def base_value(base: Family, column: str) -> object:
+def base_value(base: Family, column: str) -> Any:
     """What the base row has in a column, in the unit of that column."""
     if column in WEAVE_COLUMNS[base.family]:
         return weave_cells(base)[column]
@@ -48,7 +51,8 @@ def study_rows(base: Family, samples: Samples) -> tuple[Family, dict[int, Proble
     units = len(samples)
     (name,) = base.names
     repeated = base.take([0] * units)
-    measured, choices = dict(repeated.measured), {}
+    measured = dict(repeated.measured)
+    choices: dict[str, Any] = {}
     for column, values in samples.values.items():
         if column in _FIELDS:
             choices[_FIELDS[column]] = tuple(values.tolist())

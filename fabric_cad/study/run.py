@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,12 +20,12 @@ from ..support.staging import staged
 from .definition import Study
 from .design import DESIGNS, Samples
 from .engine import run_tasks
-from .figures import identified_figures
 from .places import check_places
 from .rows import base_value, study_rows
 from .sensitivity import left_out, read_sensitivities, sensitivities
 from .store import Store, held, unit_key
 from .table import write_table, written_digest
+from .table_figures import identified_figures
 from .units import Outcome, reason_of, run_unit
 
 
@@ -80,48 +81,89 @@ def run_study(
     """
     folder = Path(out) / study.name
     check_places(folder, study.keep)
-    notes: list[str] = []
     with held(folder):
         digest = _digest(study)
         written = written_digest(folder)  # and a lack of pyarrow is told before any work
-        samples = DESIGNS[study.design](
-            study.factors, {name: base_value(study.base, name) for name in study.factors}, study.samples, study.seed
-        )
-        table, refused = study_rows(study.base, samples)
-        reasons = {at: reason_of(InputError(problem)) for at, problem in refused.items()}
-        good = np.delete(np.arange(len(table)), list(refused))
-        part = table.take(good) if refused else table
-        found = identify_rows(part)
-        reasons |= {int(good[at]): reason_of(InputError(problem)) for at, problem in found.refused.items()}
-        identified = identified_figures(part, found) if study.figures or study.work.depth == "identify" else {}
-        _check_figures(study, identified)
+        fabrics = _fabrics(study)
+        _check_figures(study, fabrics.figures)
+
         if study.work.depth == "identify":
-            figures = _spread(identified, good[found.rows], len(table))
-            status = ["done"] * len(table)
-            for at in reasons:
-                status[at] = "refused"
-            costs, finished = {}, written == digest
-            before = len(table) if finished else 0
+            ended = _identified(fabrics, is_written=written == digest)
         else:
             store = Store(folder)
-            notes += _damage(store)
-            outcomes, before = _run_units(
-                study, store, folder, table, good[found.rows].tolist(), scheduler, workers, listen, len(reasons)
-            )
-            status = ["refused"] * len(table)
-            for at, outcome in outcomes.items():
-                status[at] = outcome.status
-                if outcome.reason:
-                    reasons[at] = outcome.reason
-            figures = _gathered({at: each.figures for at, each in outcomes.items()}, len(table))
-            costs = _gathered({at: each.costs for at, each in outcomes.items()}, len(table))
-            finished = False
-        if not finished:
-            _write(study, folder, samples, status, reasons, figures, costs, digest)
-        notes += left_out(study.figures, figures, read_sensitivities(folder))
-        counts = {name: status.count(name) for name in ("done", "refused", "failed")}
-        why = tuple((status[at], reasons[at]) for at in sorted(reasons))
-        return Counts(folder, **counts, before=before, reasons=why, notes=tuple(notes))
+            damage = _damage(store)
+            outcomes, before = _run_units(study, store, folder, fabrics, scheduler, workers, listen)
+            ended = _ended(fabrics, outcomes, before, damage)
+
+        if not ended.is_written:
+            _write(study, folder, fabrics.samples, ended, digest)
+        notes = [*ended.notes, *left_out(study.figures, ended.figures, read_sensitivities(folder))]
+        counts = {name: ended.status.count(name) for name in ("done", "refused", "failed")}
+        why = tuple((ended.status[unit], ended.reasons[unit]) for unit in sorted(ended.reasons))
+        return Counts(folder, **counts, before=ended.before, reasons=why, notes=tuple(notes))
+
+
+@dataclass(frozen=True, eq=False)
+class _Fabrics:
+    """The units of a study as far as a whole table of them is identified at once.
+
+    ``rows`` are the units that are fabrics; ``reasons`` say why the others are none; ``figures`` of the
+    fabrics are there where they are asked for.
+    """
+
+    samples: Samples
+    table: Family
+    rows: np.ndarray
+    reasons: Mapping[int, str]
+    figures: Mapping[str, Sequence]
+
+
+@dataclass(frozen=True, eq=False)
+class _Ended:
+    """What became of every unit; ``before`` were there before, with ``is_written`` the whole table too."""
+
+    status: Sequence[str]
+    reasons: Mapping[int, str]
+    figures: Mapping[str, Sequence]
+    costs: Mapping[str, Sequence]
+    before: int
+    is_written: bool = False
+    notes: Sequence[str] = ()
+
+
+def _fabrics(study: Study) -> _Fabrics:
+    """Sample a study and identify all of its units."""
+    values = {name: base_value(study.base, name) for name in study.factors}
+    samples = DESIGNS[study.design](study.factors, values, study.samples, study.seed)
+    table, refused = study_rows(study.base, samples)
+    reasons = {unit: reason_of(InputError(problem)) for unit, problem in refused.items()}
+
+    good = np.delete(np.arange(len(table)), list(refused))
+    part = table.take(good.tolist()) if refused else table
+    found = identify_rows(part)
+    reasons |= {int(good[row]): reason_of(InputError(problem)) for row, problem in found.refused.items()}
+
+    is_asked = study.figures or study.work.depth == "identify"
+    figures = identified_figures(part, found) if is_asked else {}
+    return _Fabrics(samples, table, good[found.rows], reasons, figures)
+
+
+def _identified(fabrics: _Fabrics, is_written: bool) -> _Ended:
+    """A study that ends with identification."""
+    units = len(fabrics.table)
+    status = ["refused" if unit in fabrics.reasons else "done" for unit in range(units)]
+    figures = _spread(fabrics.figures, fabrics.rows, units)
+    return _Ended(status, fabrics.reasons, figures, {}, units if is_written else 0, is_written)
+
+
+def _ended(fabrics: _Fabrics, outcomes: Mapping[int, Outcome], before: int, notes: Sequence[str]) -> _Ended:
+    """A study whose fabrics were each run."""
+    units, reasons = len(fabrics.table), dict(fabrics.reasons)
+    reasons |= {unit: outcome.reason for unit, outcome in outcomes.items() if outcome.reason}
+    status = [outcomes[unit].status if unit in outcomes else "refused" for unit in range(units)]
+    figures = _gathered({unit: outcome.figures for unit, outcome in outcomes.items()}, units)
+    costs = _gathered({unit: outcome.costs for unit, outcome in outcomes.items()}, units)
+    return _Ended(status, reasons, figures, costs, before, notes=notes)
 
 
 def _check_figures(study: Study, identified: Mapping[str, Sequence]) -> None:
@@ -147,7 +189,7 @@ def _digest(study: Study) -> str:
     from .. import __version__
 
     measured = {name: float(values[0]).hex() for name, values in sorted(study.base.measured.items())}
-    parts = [__version__, study.base.family, repr(study.base.weaves), study.base.sections]
+    parts: list[object] = [__version__, study.base.family, repr(study.base.weaves), study.base.sections]
     parts += [study.base.float_gaps, study.base.thicker, measured]
     parts += [study.factors, study.design, study.samples, study.seed, study.work, study.figures]
     return hashlib.sha256(repr(parts).encode()).hexdigest()
@@ -177,16 +219,23 @@ def _gathered(cells: Mapping[int, Mapping], units: int) -> dict[str, list]:
 
 
 def _run_units(
-    study: Study, store: Store, folder: Path, table: Family, rows: list[int], scheduler, workers, listen, refused: int
+    study: Study,
+    store: Store,
+    folder: Path,
+    fabrics: _Fabrics,
+    scheduler: str | None,
+    workers: int | None,
+    listen: Callable[[Progress], None],
 ) -> tuple[dict[int, Outcome], int]:
     """Outcome of every fabric by unit number, and how many were there before."""
-    units = {at: table.take([at]) for at in rows}
+    table = fabrics.table
+    units = {at: table.take([at]) for at in fabrics.rows.tolist()}
     keys = {at: unit_key(unit, study.work, study.keep) for at, unit in units.items()}
     cells = str((folder / "cells").absolute()) if study.keep else None
     copies = Counter(keys.values())
     missing = {key: at for at, key in reversed(keys.items()) if key not in store.outcomes}  # equal units once
     missing = dict(reversed(missing.items()))
-    before = refused + sum(key in store.outcomes for key in keys.values())
+    before = len(fabrics.reasons) + sum(key in store.outcomes for key in keys.values())
     start, ended = time.perf_counter(), 0
 
     def tell() -> None:
@@ -224,10 +273,10 @@ def _outcome(result: object, study: Study) -> Outcome:
     return Outcome("failed", f"{type(result).__name__}: {result}")
 
 
-def _write(study: Study, folder: Path, samples: Samples, status, reasons, figures, costs, digest: str) -> None:
-    units = len(samples)
-    columns = {"unit": np.arange(units), **samples.labels, **samples.values}
-    columns |= {"status": status, "reason": [reasons.get(at) for at in range(units)], **figures}
+def _write(study: Study, folder: Path, samples: Samples, ended: _Ended, digest: str) -> None:
+    units, figures, costs = len(samples), ended.figures, ended.costs
+    columns: dict[str, Any] = {"unit": np.arange(units), **samples.labels, **samples.values}
+    columns |= {"status": ended.status, "reason": [ended.reasons.get(at) for at in range(units)], **figures}
     found = sensitivities(study.design, samples, figures, study.figures)
     with staged(folder, last="table.parquet") as aside:  # its digest says that the others are there
         write_table(columns, aside, digest)

@@ -111,7 +111,7 @@ def sobol_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
         | {
             f"{order}{end}": float(what[number, k])
             for number, order in enumerate(("first_order", "total"))
-            for end, what in (("", everything), ("_low", spread.low), ("_high", spread.high))
+            for end, what in (("", everything), ("_low", np.asarray(spread.low)), ("_high", np.asarray(spread.high)))
         }
         | {"samples": used}
         for k, factor in enumerate(samples.values)

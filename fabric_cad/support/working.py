@@ -116,6 +116,8 @@ class _Work:
                     _log.warning("%s: another run is at work on it (%s); waiting for its end", self.target, who)
                 self.leave()
                 time.sleep(_POLL)
+        if self.descriptor is None:
+            raise RuntimeError(f"{self.folder}: owned without a lock")
         locks.sign(self.descriptor)
         _held[self.folder.absolute()] = self.descriptor
         _empty(self.folder)

@@ -142,7 +142,8 @@ def test_fibres_that_do_not_fit_are_told():
 
 
 def test_a_study_has_the_warnings_of_its_units():
-    from fabric_cad.study.figures import flat, identified_figures
+    from fabric_cad.study.figures import flat
+    from fabric_cad.study.table_figures import identified_figures
 
     measured = table("twill", TWILL32, TWILL32 | {"name": "steep", "weft_crimp": 0.2})
     found = identify_rows(measured)

@@ -15,9 +15,8 @@ from pathlib import Path
 import pytest
 from jobs import BLOCK, endless, needs_ccx, pulled, pushed, step
 
-from fabric_cad.simulation import solver as solver_module
 from fabric_cad.simulation.results import read_dat, read_frd
-from fabric_cad.simulation.solver import find_solver, run_solver, step_periods
+from fabric_cad.simulation.solver import find_solver, process, run_solver, step_periods
 from fabric_cad.support.errors import FabricCadError, InputError, SolverError
 from fabric_cad.support.staging import staged
 
@@ -192,7 +191,7 @@ def test_no_call_is_needed_that_windows_lacks(tmp_path, monkeypatch, how):
     for name in ("wait4", "killpg", "WNOHANG"):
         monkeypatch.delattr(os, name)
     monkeypatch.setitem(sys.modules, "fcntl", None)
-    monkeypatch.setattr(solver_module, "_ties", lambda folder: {})
+    monkeypatch.setattr(process, "_ties", lambda folder: {})
     body = "exec sleep 60" if how == "is stopped" else "exit 3"
     reason = "stopped at the time limit of 0.3 s" if how == "is stopped" else "ccx ended with status 3"
     run = run_solver(job(tmp_path, BLOCK), script(tmp_path / "solver", body), time_limit=0.3)

@@ -16,9 +16,10 @@ from fabric_cad.measured.tables import FLOAT_GAPS
 from fabric_cad.model.identification import identify, identify_rows
 from fabric_cad.study.design import DESIGNS, Samples
 from fabric_cad.study.factors import Values
-from fabric_cad.study.figures import flat, identified_figures
+from fabric_cad.study.figures import flat
 from fabric_cad.study.rows import base_value, study_rows
 from fabric_cad.study.store import unit_key
+from fabric_cad.study.table_figures import identified_figures
 from fabric_cad.study.units import Work
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import yarns_of

@@ -19,11 +19,11 @@ from fabric_cad.cell.pipeline import find_row, make_cell
 from fabric_cad.cli import main
 from fabric_cad.model.identification import identify_rows
 from fabric_cad.study import read_study, run_study
-from fabric_cad.study.figures import identified_figures
 from fabric_cad.study.names import figure_names
 from fabric_cad.study.sensitivity import read_sensitivities
 from fabric_cad.study.store import held
 from fabric_cad.study.table import read_table
+from fabric_cad.study.table_figures import identified_figures
 from fabric_cad.support.errors import OutputError
 
 SOBOL = """
