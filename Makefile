@@ -43,6 +43,14 @@ tension: $(READY) ## WEAVE=row: biaxial tension of its cell (needs CalculiX: ccx
 shear: $(READY) ## WEAVE=row: in-plane shear of its cell (needs CalculiX: ccx)
 	@$(BIN)/fabric-cad shear $(WEAVE) $(OPTIONS)
 
+.PHONY: stiffness
+stiffness: $(READY) ## WEAVE=row: homogenised stiffness of its composite (OPTIONS=--plate: A, B, D)
+	@$(BIN)/fabric-cad stiffness $(WEAVE) $(OPTIONS)
+
+.PHONY: voxels
+voxels: $(READY) ## WEAVE=row: its composite on a regular grid (OPTIONS='--cells 200x200x60')
+	@$(BIN)/fabric-cad voxels $(WEAVE) $(OPTIONS)
+
 .PHONY: show
 show: $(READY) ## WEAVE=row: the same cell in an interactive window
 	@$(BIN)/fabric-cad show $(WEAVE)

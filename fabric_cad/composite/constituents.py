@@ -14,12 +14,13 @@ from pathlib import Path
 
 from ..measured.settings_files import FINITE, POISSON, POSITIVE, TEXT, Check, SettingsFile
 from ..measured.shipped import shipped_families
+from ..model.plausibility import DENSEST
 from ..support.errors import InputError, Problem
 from .transverse import TransverselyIsotropic, isotropic
 
 FILE = "composite.toml"
 
-CLOSEST_PACKING = math.pi / (2 * math.sqrt(3))
+CLOSEST_PACKING = DENSEST
 """Fibre volume fraction of round fibres that touch in a hexagonal array, 0.9069: the most there is."""
 
 

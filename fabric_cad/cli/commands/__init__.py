@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..options import Command
-from . import cell, init, listing, loads, show, solve, study, validate, wif
+from . import cell, init, listing, loads, show, solve, stiffness, study, validate, voxels, wif
 
 
 def commands() -> tuple[Command[Any], ...]:
@@ -16,6 +16,8 @@ def commands() -> tuple[Command[Any], ...]:
         validate.COMMAND,
         cell.COMMAND,
         *loads.load_commands(),
+        stiffness.COMMAND,
+        voxels.COMMAND,
         study.COMMAND,
         show.COMMAND,
         wif.COMMAND,

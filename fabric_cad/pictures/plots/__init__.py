@@ -6,6 +6,7 @@ and 22c) make a figure of their own where they are given none, and return the fi
 
 from .crushing import plot_crushing
 from .cuts import plot_cut, plot_edges
+from .directions import plot_directions
 from .figures import save_figure
 from .models import plot_gap_maps, plot_model_cuts
 from .outlines import sample, section_outline
@@ -18,6 +19,7 @@ from .trajectories import plot_trajectory
 __all__ = [
     "plot_crushing",
     "plot_cut",
+    "plot_directions",
     "plot_edges",
     "plot_gap_maps",
     "plot_model_cuts",

@@ -1,0 +1,67 @@
+"""``fabric-cad stiffness``: the homogenised properties of the composite of rows."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..composite_options import BoxOptions, declare_box
+from ..options import Command, declare_mesh, declare_rows
+from ..rows import find_row, work_on_rows
+from ..voice import Voice
+
+
+@dataclass(frozen=True, kw_only=True)
+class StiffnessOptions(BoxOptions):
+    """Rows, their meshes and boxes, and what is asked for beside the stiffness."""
+
+    plate: bool = False
+
+
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``stiffness``."""
+    declare_rows(parser)
+    declare_mesh(parser, default=" (default: coarser than a cell's, 8 across)")
+    declare_box(parser)
+    parser.add_argument(
+        "--plate",
+        action="store_true",
+        help="the cell as a plate with free floor and ceiling too: A, B and D",
+    )
+
+
+def run(options: StiffnessOptions, voice: Voice) -> int:
+    """Homogenise the composites of rows."""
+    return work_on_rows(options, voice, lambda name: make(name, options, voice))
+
+
+def make(name: str, options: StiffnessOptions, voice: Voice) -> None:
+    """Homogenise the composite of one row into OUT/<row>."""
+    from ...cell.pipeline import Stages
+    from ...composite.stiffness.report import summary
+    from ...composite.stiffness.run import make_stiffness
+
+    row = find_row(name, options, voice)
+    report = make_stiffness(
+        row,
+        options.families,
+        options.out,
+        mesh=options.mesh,
+        options=options.box,
+        plate=options.plate,
+        stages=Stages(voice.stage),
+    )
+    voice.warn(report.warnings)
+    voice.summary(summary(report))
+    voice.files(Path(options.out) / name / f"stiffness.{kind}" for kind in ("json", "csv", "png", "pdf", "pvd"))
+    voice.flush()
+
+
+COMMAND = Command(
+    name="stiffness",
+    text="homogenise the composite of rows: stiffness, expansion, conductivity; constituents: FAMILIES/composite.toml",
+    options=StiffnessOptions,
+    run=run,
+    declare=declare,
+)

@@ -1,0 +1,1 @@
+"""``fabric-cad stiffness``: from a row to the properties of its composite."""

@@ -1,0 +1,116 @@
+"""The stages from a measured row to the effective properties of its composite cell.
+
+row -> solved fabric -> hexahedra of yarns and matrix -> materials of all elements -> homogenisation
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...cell.pipeline import Stages
+from ...measured.tables import Family
+from ...meshing.options import MeshOptions
+from ...meshing.quality import mesh_quality
+from ...model.identification import identify
+from ...model.solved import SolvedFabric, SolvedTable
+from ...support.errors import InputError, Problem
+from ...support.memory import available_memory
+from ..cell import CompositeCell
+from ..constituents import Constituents, read_constituents
+from ..fibres import fibre_sections
+from ..homogenisation.homogenise import Effective, Materials, Plate, homogenise, homogenise_plate
+from ..homogenisation.periodicity import PeriodicMesh
+from ..materials import element_fractions, element_materials
+from ..matrix import mesh_composite
+from ..options import CompositeOptions
+from ..spacing import composite_mesh_options
+
+COARSE = {"across": 8, "crossing": 8}
+"""The mesh where nothing is said of it: moduli change by 1 % on finer ones, which follow the yarns' faces closer."""
+
+_BYTES = 9000  # a hexahedron needs, measured
+
+
+@dataclass(frozen=True, eq=False)
+class CompositeStiffness:
+    """A row's composite cell, what its elements are made of, and what it is like from far away.
+
+    ``fractions`` (elements,) are the yarns' fibre volume fractions, 0 in the matrix, NaN where not known;
+    ``quality`` (elements,) the scaled Jacobian.
+    """
+
+    row: Family
+    solved: SolvedTable
+    options: MeshOptions
+    cell: CompositeCell
+    quality: np.ndarray
+    constituents: Constituents
+    fractions: np.ndarray
+    materials: Materials
+    effective: Effective
+    plate: Plate | None
+
+    @property
+    def fabric(self) -> SolvedFabric:
+        """The row, solved."""
+        return self.solved[self.row.names[0]]
+
+
+def compute_stiffness(
+    row: Family,
+    families: str | Path,
+    *,
+    mesh: Mapping[str, Any],
+    options: CompositeOptions,
+    plate: bool,
+    stages: Stages,
+) -> CompositeStiffness:
+    """Homogenise the composite of a table of one row, with the ``composite.toml`` of a folder.
+
+    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`.
+    Raises :class:`InputError` for what is wrong in the input or would not fit in memory, :class:`SolverError` where
+    the equations are not solved.
+    """
+    (name,) = row.names
+    constituents = read_constituents(families, name)
+    sections = fibre_sections(row, constituents)
+    with stages("identify"):
+        solved = identify(row)
+        fabric = solved[name]
+        used = composite_mesh_options(fabric, **(mesh if "size" in mesh else COARSE | dict(mesh)))
+    with stages("mesh"):
+        cell = mesh_composite(fabric, used, options)
+        quality = mesh_quality(cell.mesh).scaled_jacobian
+    _refuse_too_large(len(cell.mesh.hexahedra))
+
+    with stages("materials"):
+        fractions = element_fractions(cell.mesh, fabric, sections)
+        materials = element_materials(cell.mesh, fractions, constituents)
+    with stages("homogenise"):
+        effective = homogenise(periodic_mesh(cell, fabric), materials)
+    bent = None
+    if plate:
+        with stages("plate"):
+            bent = homogenise_plate(periodic_mesh(cell, fabric, through=False), materials)
+
+    return CompositeStiffness(row, solved, used, cell, quality, constituents, fractions, materials, effective, bent)
+
+
+def periodic_mesh(cell: CompositeCell, fabric: SolvedFabric, through: bool = True) -> PeriodicMesh:
+    """A composite cell that repeats in its plane, and ``through`` its thickness as well or not."""
+    height = cell.size[2] * fabric.lattice.axes[2, 2]
+    vectors = np.vstack([fabric.lattice.vectors, [0.0, 0.0, height]])
+    origin = np.array([0.0, 0.0, -height / 2])
+    return PeriodicMesh(cell.mesh.points, cell.mesh.hexahedra, vectors, origin, (True, True, through))
+
+
+def _refuse_too_large(hexahedra: int) -> None:
+    needed, available = _BYTES * hexahedra, available_memory()
+    if available is not None and needed > available:
+        message = f"{hexahedra} hexahedra need some {needed / 1e9:.1f} GB, {available / 1e9:.1f} GB are there"
+        raise InputError(Problem(message, column="across"))

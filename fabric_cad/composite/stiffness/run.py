@@ -1,0 +1,61 @@
+"""The stiffness of a row's composite, with every file of it in the row's folder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ...cell.pipeline import Stages
+from ...cell.traces import renew_digests, write_traced
+from ...measured.tables import Family, expect_row
+from ...support.interrupts import uninterrupted
+from ...support.staging import staged
+from ..options import USUAL, CompositeOptions
+from .computation import CompositeStiffness, compute_stiffness
+from .report import StiffnessReport, stiffness_report, write_table
+
+NAME = "stiffness"
+"""The stem of every file."""
+
+
+def make_stiffness(
+    row: Family,
+    families: str | Path,
+    out: str | Path,
+    *,
+    mesh: Mapping[str, Any] | None = None,
+    options: CompositeOptions = USUAL,
+    plate: bool = False,
+    stages: Stages | None = None,
+) -> StiffnessReport:
+    """Homogenise the composite of a table of one row; its files are in ``out/<row name>``, its report is returned.
+
+    ``families`` is the folder whose ``composite.toml`` holds, where it has one; ``mesh`` are keywords of
+    :func:`~fabric_cad.composite.spacing.composite_mesh_options`; ``options`` say how the matrix fills the box; with
+    ``plate`` the stiffness of the cell as a plate is there too. Raises :class:`FabricCadError`; earlier
+    results are then as they were.
+    """
+    expect_row(row)
+    stages = stages or Stages()
+    with staged(Path(out) / row.names[0], renew_digests) as folder:
+        computed = compute_stiffness(row, families, mesh=mesh or {}, options=options, plate=plate, stages=stages)
+        _write(computed, folder, stages)
+        report = stiffness_report(computed, stages.seconds)
+        write_table(report, folder / f"{NAME}.csv")
+        write_traced(report.content(), folder / f"{NAME}.json")
+
+    return report
+
+
+def _write(computed: CompositeStiffness, folder: Path, stages: Stages) -> None:
+    """The files that take long: series and picture."""
+    with stages("write states"):
+        with uninterrupted():
+            from .states import write_states
+
+        write_states(computed, folder / f"{NAME}.pvd")
+    with stages("picture"):
+        from ...pictures.plots import plot_directions, save_figure
+
+        save_figure(plot_directions(computed.effective.stiffness), folder / f"{NAME}.png", computed.fabric.name)
