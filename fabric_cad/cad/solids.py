@@ -34,7 +34,7 @@ def solid_of(surface: Skin, lattice: Lattice = AS_WOVEN) -> cq.Solid:
     faces = [_face(patch, surface, lattice) for patch in surface.patches]
     open_shell, rim = _sew(faces)
 
-    along = lattice.woven_coordinate(Direction(surface.direction).axis)
+    along = lattice.woven_coordinate(surface.direction.axis)
     places = surface.planes[0].place, surface.planes[-1].place
     ends = [_cap(rim, along, place) for place in places]
     shell, _ = _sew([*open_shell.Faces(), *ends])

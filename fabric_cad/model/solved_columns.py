@@ -9,6 +9,7 @@ import numpy as np
 from ..measured.family import Family
 from ..section.frame import KINDS
 from ..weave.directions import DIRECTIONS, Direction
+from ..weave.levels import HIGH, LOW, level_of
 from .closing import CLOSING, Closed
 from .contacts import of_rows
 from .free_sides import between_side, free_side
@@ -116,12 +117,11 @@ def _path(solution: Solution, direction: Direction) -> Columns:
     floats = [transitions.low_float, transitions.high_float]
     extents = [transitions.u_low, transitions.u_high]
 
+    z_low, z_high = (level_of(direction, below).height(direction, A1, A2) for below in (LOW, HIGH))
     if direction is Direction.WEFT:
-        number, sign = 1, 1.0
-        z_start, z_end = 0.0 * A1, A1  # z12, (A.29)
+        number, sign, z_start, z_end = 1, 1.0, z_low, z_high
     else:
-        number, sign = 2, -1.0
-        z_start, z_end = (A1 + A2) / 2, (A1 - A2) / 2  # (14), (A.35)
+        number, sign, z_start, z_end = 2, -1.0, z_high, z_low
         offsets, floats, extents = offsets[::-1], floats[::-1], extents[::-1]
 
     # (A.25), (A.26): s = 2 p u at either plateau

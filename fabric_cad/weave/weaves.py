@@ -11,6 +11,7 @@ import numpy as np
 from .bodies import Body, YarnBody
 from .directions import Direction
 from .faults import pattern_faults, regular_fault
+from .levels import HIGH, LOW, Level, level_of
 
 FAMILIES = ("plain", "twill", "satin", "pattern")
 """The weave types; each has one table ``<family>.csv`` and one master."""
@@ -57,12 +58,16 @@ class Weave:
         """Yarns that one weft, or one warp, crosses in the cell."""
         return self.warps if direction == Direction.WEFT else self.wefts
 
+    def warps_below(self) -> np.ndarray:
+        """How many warps, 0 or 1, lie below the weft at every crossing: integers, shape (wefts, warps)."""
+        if self.pattern:
+            return np.array([[int(mark) for mark in row] for row in self.pattern])
+        wefts, warps = np.ogrid[: self.wefts, : self.warps]
+        return ((warps - self.step * wefts) % self.warps < self.over).astype(int)
+
     def interlacement(self) -> np.ndarray:
         """Boolean matrix, shape (wefts, warps): True where the weft passes over the warp."""
-        if self.pattern:
-            return np.array([[mark == "1" for mark in row] for row in self.pattern])
-        wefts, warps = np.ogrid[: self.wefts, : self.warps]
-        return (warps - self.step * wefts) % self.warps < self.over
+        return self.warps_below() > 0
 
     def name(self, family: str) -> str:
         """What people call it, e.g. ``satin 8 step 3`` or ``pattern 4 wefts x 6 warps``."""
@@ -126,6 +131,11 @@ class Yarn:
     def name(self) -> str:
         """What files call it: ``weft_1``."""
         return self.body.name
+
+    @property
+    def levels(self) -> tuple[Level, ...]:
+        """Its level at every crossing."""
+        return tuple(level_of(self.direction, HIGH if high else LOW) for high in self.high)
 
     @property
     def floats_on(self) -> tuple[bool, ...]:

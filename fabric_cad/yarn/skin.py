@@ -16,6 +16,7 @@ import numpy as np
 
 from ..section.splines import as_cubic
 from ..section.strips import Section
+from ..weave.directions import Direction
 from .planes import ControlPlane
 from .trajectory import Trajectory
 
@@ -59,7 +60,7 @@ class Patch:
 class Skin:
     """The closed surface of a yarn, its two end sections excepted."""
 
-    direction: str
+    direction: Direction
     axis: float
     planes: tuple[ControlPlane, ...]
     patches: tuple[Patch, ...]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ..model.solved import SolvedFabric
 from ..section.splines import Quadratic, Spline, line, quadratic_spline
+from ..weave.directions import Direction
 from ..weave.weaves import Yarn
 from .planes import ControlPlane
 
@@ -18,7 +19,7 @@ class Trajectory:
     ``axis`` is the yarn's place across (y of a weft, x of a warp), mm.
     """
 
-    direction: str
+    direction: Direction
     axis: float
     planes: tuple[ControlPlane, ...]
     pieces: tuple[Spline, ...]
