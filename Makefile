@@ -55,6 +55,14 @@ voxels: $(READY) ## WEAVE=row: its composite on a regular grid (OPTIONS='--cells
 show: $(READY) ## WEAVE=row: the same cell in an interactive window
 	@$(BIN)/fabric-cad show $(WEAVE)
 
+.PHONY: page
+page: $(READY) ## WEAVE=row: its cell as one HTML file to look at, build/<row>/page.html
+	@$(BIN)/fabric-cad page $(WEAVE)
+
+.PHONY: gallery
+gallery: $(READY) ## every row as an HTML file, and an index of them, in build/gallery
+	@$(BIN)/fabric-cad page --gallery
+
 .PHONY: list
 list: $(READY) ## every row of the family tables
 	@$(BIN)/fabric-cad list

@@ -129,6 +129,14 @@ def answer(row: EditedRow) -> Solution | tuple[Problem, ...]:
     return Solution(row, table, identified, solved, solved[table.names[0]])
 
 
+def solution_of(table: Family) -> Solution:
+    """The fabric of a table of one row. Raises :class:`InputError` where it is none."""
+    found = answer(edited(table))
+    if not isinstance(found, Solution):
+        raise InputError(found)
+    return found
+
+
 def edited(table: Family) -> EditedRow:
     """The row of a table of one row, to be edited."""
     weave = table.weaves[0]

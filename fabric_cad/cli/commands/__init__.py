@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..options import Command
-from . import cell, init, listing, loads, show, solve, stiffness, study, validate, voxels, wif
+from . import cell, init, listing, loads, page, show, solve, stiffness, study, validate, voxels, wif
 
 
 def commands() -> tuple[Command[Any], ...]:
@@ -20,6 +20,7 @@ def commands() -> tuple[Command[Any], ...]:
         voxels.COMMAND,
         study.COMMAND,
         show.COMMAND,
+        page.COMMAND,
         wif.COMMAND,
         init.COMMAND,
     )
