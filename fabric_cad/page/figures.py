@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..model.plausibility import implausible
 from ..model.scatter import propagate
-from ..study.figures import identified_figures
+from ..study.table_figures import identified_figures
 from ..support.errors import InputError
 from ..weave.directions import DIRECTIONS
 from ..yarn.edges import allowed_scaled_jacobian
