@@ -35,6 +35,10 @@ install: $(READY) ## make the environment .venv
 cell: $(READY) ## WEAVE=row: STEP, mesh, deck, picture and report of one row in build/<row>
 	@$(BIN)/fabric-cad cell $(WEAVE) $(OPTIONS)
 
+.PHONY: composite
+composite: $(READY) ## WEAVE=row: its composite cell, with a matrix of hexahedra between the yarns, in build/<row>
+	@$(BIN)/fabric-cad composite $(WEAVE) $(OPTIONS)
+
 .PHONY: tension
 tension: $(READY) ## WEAVE=row: biaxial tension of its cell (needs CalculiX: ccx)
 	@$(BIN)/fabric-cad tension $(WEAVE) $(OPTIONS)

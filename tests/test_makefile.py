@@ -19,7 +19,7 @@ def foretold(*arguments, **environment):
     return done.stdout
 
 
-@pytest.mark.parametrize("target", ["cell", "tension", "shear", "show"])
+@pytest.mark.parametrize("target", ["cell", "composite", "tension", "shear", "show"])
 def test_without_a_weave_the_default_row_is_taken(target):
     assert f"fabric-cad {target} twill32" in foretold(target)  # make predefines WEAVE itself, for CWEB
 

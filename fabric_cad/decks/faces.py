@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,25 +41,48 @@ _UPRIGHT = 0.1  # sine up to which a face is one of the yarn's sides, neither to
 
 
 def element_faces(mesh: Mesh) -> dict[Surface, Faces]:
-    """For every surface, the faces of the elements it bounds, in their order.
+    """For every surface, the faces of the elements of its body that it bounds, in their order.
 
-    Raises ValueError where a quadrilateral is the face of no element.
+    Raises ValueError where a quadrilateral is the face of no element of the body.
     """
+    count = len(mesh.bodies)
+    every = _faces_on(mesh, mesh.surfaces.values())
+    keys = _keys(mesh, every) * count + mesh.body[every.elements]  # bodies that are bonded share faces
+    wanted = {
+        surface: _face_keys(quads, len(mesh.points)) * count + mesh.bodies.index(surface.body)
+        for surface, quads in mesh.surfaces.items()
+    }
+    return {surface: _sought(surface.name, each, keys, every) for surface, each in wanted.items()}
+
+
+def outer_faces(mesh: Mesh, surfaces: Mapping[str, np.ndarray]) -> dict[str, Faces]:
+    """The same for quadrilaterals (quads, 4) on the outside of a mesh, which are the face of one element each."""
+    every = _faces_on(mesh, surfaces.values())
+    keys = _keys(mesh, every)
+    return {name: _sought(name, _face_keys(quads, len(mesh.points)), keys, every) for name, quads in surfaces.items()}
+
+
+def _faces_on(mesh: Mesh, surfaces: Iterable[np.ndarray]) -> Faces:
+    """All faces of elements with no corner off the surfaces."""
     on_surface = np.zeros(len(mesh.points), dtype=bool)
-    for quads in mesh.surfaces.values():
+    for quads in surfaces:
         on_surface[quads] = True
-    elements, sides = np.nonzero(on_surface[mesh.hexahedra[:, FACES]].all(axis=2))
-    keys = _face_keys(mesh.hexahedra[elements[:, None], FACES[sides]], len(mesh.points))
+    return Faces(*np.nonzero(on_surface[mesh.hexahedra[:, FACES]].all(axis=2)))
+
+
+def _keys(mesh: Mesh, faces: Faces) -> np.ndarray:
+    return _face_keys(mesh.hexahedra[faces.elements[:, None], FACES[faces.sides]], len(mesh.points))
+
+
+def _sought(name: str, wanted: np.ndarray, keys: np.ndarray, every: Faces) -> Faces:
+    """The faces among ``every`` of which the ``keys`` are those ``wanted``, by element."""
+    if not len(wanted):
+        return every[np.empty(0, dtype=np.int64)]
     order = np.argsort(keys)
-    found = {}
-    for surface, quads in mesh.surfaces.items():
-        wanted = _face_keys(quads, len(mesh.points))
-        at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
-        if not np.array_equal(keys[at], wanted):
-            raise ValueError(f"surface {surface} has a quadrilateral that bounds no element")
-        by_element = np.argsort(elements[at], kind="stable")
-        found[surface] = Faces(elements[at][by_element], sides[at][by_element])
-    return found
+    at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
+    if not np.array_equal(keys[at], wanted):
+        raise ValueError(f"surface {name} has a quadrilateral that bounds no element")
+    return every[at[np.argsort(every.elements[at], kind="stable")]]
 
 
 def _face_keys(quads: np.ndarray, nodes: int) -> np.ndarray:

@@ -15,7 +15,10 @@ from .mesh import Mesh
 
 
 def read_mesh(msh: str | Path) -> Mesh:
-    """Read a mesh written by :func:`mesh_cell`. Raises :class:`BuildError` where it cannot be."""
+    """Read a mesh of a cell, or that of a composite cell, without the faces of its box.
+
+    Raises :class:`BuildError` where it cannot be.
+    """
     with gmsh_session() as gmsh:
         try:
             gmsh.open(str(msh))
@@ -35,8 +38,7 @@ def _read(gmsh: Any) -> Mesh:
             body = Body.named(name)
             hexahedra[body], rest = _elements(gmsh, (dimension, group), HEXAHEDRON, 8)
             others += rest
-        else:
-            surface = Surface.named(name)
+        elif (surface := _surface(name)) is not None:
             surfaces[surface], _ = _elements(gmsh, (dimension, group), QUADRILATERAL, 4)
 
     blocks = list(hexahedra.values())
@@ -48,6 +50,14 @@ def _read(gmsh: Any) -> Mesh:
         surfaces=MappingProxyType({surface: index[tags] for surface, tags in surfaces.items()}),
         other_elements=others,
     )
+
+
+def _surface(name: str) -> Surface | None:
+    """The surface of a body that is called so; None where it is one of no body, as a face of the box."""
+    try:
+        return Surface.named(name)
+    except ValueError:
+        return None
 
 
 def _nodes(gmsh: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..options import Command
-from . import cell, init, listing, loads, page, show, solve, stiffness, study, validate, voxels, wif
+from . import cell, composite, init, listing, loads, page, show, solve, stiffness, study, validate, voxels, wif
 
 
 def commands() -> tuple[Command[Any], ...]:
@@ -15,6 +15,7 @@ def commands() -> tuple[Command[Any], ...]:
         solve.COMMAND,
         validate.COMMAND,
         cell.COMMAND,
+        composite.COMMAND,
         *loads.load_commands(),
         stiffness.COMMAND,
         voxels.COMMAND,
