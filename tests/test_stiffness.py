@@ -2,6 +2,8 @@
 
 import csv
 import json
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from fabric_cad.composite.constituents import Constituents, GivenYarn, Matrix
 from fabric_cad.composite.homogenisation.homogenise import constants, homogenise, homogenise_plate
 from fabric_cad.composite.materials import element_materials
 from fabric_cad.composite.matrix import mesh_composite
-from fabric_cad.composite.options import USUAL
+from fabric_cad.composite.options import USUAL, CompositeOptions
 from fabric_cad.composite.spacing import composite_mesh_options
 from fabric_cad.composite.stiffness.computation import COARSE, periodic_mesh
 from fabric_cad.measured.shipped import shipped_families
@@ -197,3 +199,60 @@ def test_voxels_are_written(here):
     thickness = 2 * 0.3622081848
     assert stored["spacing_mm"][2] * 6 == pytest.approx(1.2 * thickness, rel=1e-6)
     assert (here / "build" / "plain" / "voxels.vti").stat().st_size > 1000
+
+
+def gauss_weights(mesh):
+    """Volumes (elements, 8) at the integration points of C3D8, first axis fastest."""
+    signs = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]) * 2 - 1.0
+    weights = []
+    for z, y, x in np.ndindex(2, 2, 2):
+        at = (2 * np.array([x, y, z]) - 1) / np.sqrt(3)
+        factors = 1 + signs * at
+        slopes = np.stack([signs[:, i] * factors[:, i - 2] * factors[:, i - 1] / 8 for i in range(3)], axis=1)
+        weights.append(np.linalg.det(np.einsum("ai,naj->nij", slopes, mesh.points[mesh.hexahedra])))
+    return np.stack(weights, axis=1)
+
+
+def printed_stresses(text):
+    """Per step, rows of element, point, xx, yy, zz, xy, xz, yz from a .dat file of CalculiX."""
+    for block in text.split(" stresses (")[1:]:
+        lines = [line.split() for line in block.split("total internal energy")[0].splitlines()[1:]]
+        yield np.array([line for line in lines if len(line) == 8], dtype=float)
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="needs CalculiX")
+def test_calculix_finds_the_same_stiffness_from_the_deck(here):
+    """Yarns whose fibre fraction varies along them, stresses integrated over the cell."""
+    glass = "[fibre]\nE1_MPa = 73e3\nE2_MPa = 73e3\nG12_MPa = 30e3\nG23_MPa = 30e3\nnu12 = 0.2\ndensity_g_cm3 = 2.5\n"
+    (here / "families" / "composite.toml").write_text(glass + "[matrix]\nE_MPa = 3500\nnu = 0.35\n")
+    row = "twintex_tpeet22"
+    command = ["stiffness", row, "--across", "4", "--crossing", "4", "--gap", "2", "--layers", "1", "--quiet"]
+    assert main([*command, "--deck", "calculix"]) == 0
+    assert main(command) == 0
+
+    folder = here / "build" / row
+    assert "*DISTRIBUTION TABLE" not in (folder / "stiffness.inp").read_text()
+    subprocess.run([shutil.which("ccx"), "stiffness"], cwd=folder, check=True, capture_output=True)
+    report = json.loads((folder / "stiffness.json").read_text())
+    fractions = report["yarn"]["fibre_fraction"]
+    assert fractions["greatest"] > 1.02 * fractions["least"]
+
+    fabric = identify(read_families("families")["plain"][row])[row]
+    options = composite_mesh_options(fabric, across=4, crossing=4, gap=2)
+    weights = gauss_weights(mesh_composite(fabric, options, CompositeOptions(layers=1)).mesh)
+    columns = []
+    for rows in printed_stresses((folder / "stiffness.dat").read_text()):
+        element, point = rows[:, :2].astype(int).T - 1
+        mean = weights[element, point] @ rows[:, 2:] / np.prod(report["mesh"]["box_mm"])
+        columns.append(mean[[0, 1, 2, 5, 4, 3]])
+    stiffness = np.array(report["C_MPa"])
+    np.testing.assert_allclose(columns, stiffness, rtol=0, atol=1e-7 * stiffness.max())
+
+
+def test_the_deck_for_abaqus_asks_for_volumes(here):
+    assert main(["stiffness", "plain", "--across", "4", "--gap", "2", "--layers", "1", "--deck", "abaqus", "-q"]) == 0
+    deck = (here / "build" / "plain" / "stiffness.inp").read_text()
+    assert deck.count("*STEP") == 6
+    assert "S, IVOL" in deck
+    assert "*DISTRIBUTION TABLE" in deck
+    assert max(len(word) for line in deck.splitlines() if line[:1] != "*" for word in line.split(", ")) <= 20

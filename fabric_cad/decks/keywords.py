@@ -153,6 +153,17 @@ class EngineeringConstants(Keyword):
 
 
 @dataclass(frozen=True)
+class IsotropicElasticity(Keyword):
+    """``*ELASTIC``: Young's modulus, MPa, and Poisson's ratio."""
+
+    modulus: float
+    ratio: float
+
+    def lines(self, dialect: str) -> Iterator[str]:
+        yield f"*ELASTIC\n{self.modulus:.10g}, {self.ratio:.10g}\n"
+
+
+@dataclass(frozen=True)
 class Compaction(Keyword):
     """``*HYPERELASTIC, REDUCED POLYNOMIAL`` of second order with energy ``hardening / 4 (J - 1)**4`` alone (MPa).
 
@@ -296,6 +307,39 @@ class StaticStep(Keyword):
     def lines(self, dialect: str) -> Iterator[str]:
         yield f"** {self.title}\n*STEP, NLGEOM, INC={self.increments}\n*STATIC\n"
         yield f"{self.first:.6g}, 1., {self.smallest:.6g}, 1.\n"
+        for keyword in self.content:
+            yield from keyword.lines(dialect)
+        yield "*END STEP\n"
+
+
+@dataclass(frozen=True)
+class StressOutput(Keyword):
+    """Displacements, and the stresses at all integration points of the set ``elements``, in the axes of space.
+
+    CalculiX prints them into the ``.dat``, with the elements' energies and volumes summed; Abaqus keeps the points'
+    volumes with them.
+    """
+
+    elements: str
+
+    def lines(self, dialect: str) -> Iterator[str]:
+        if dialect == "abaqus":
+            yield "*OUTPUT, FIELD\n*NODE OUTPUT\nU\n*ELEMENT OUTPUT, DIRECTIONS=YES\nS, IVOL\n"
+            return
+        yield "*NODE FILE\nU\n*EL FILE\nS\n"
+        yield f"*EL PRINT, ELSET={self.elements}, GLOBAL=YES\nS\n"
+        yield f"*EL PRINT, ELSET={self.elements}, TOTALS=ONLY\nELSE, EVOL\n"
+
+
+@dataclass(frozen=True)
+class LinearStep(Keyword):
+    """``*STEP`` with ``*STATIC`` of a linear problem: ``content`` applied at once."""
+
+    title: str
+    content: tuple[Keyword, ...]
+
+    def lines(self, dialect: str) -> Iterator[str]:
+        yield f"** {self.title}\n*STEP\n*STATIC\n"
         for keyword in self.content:
             yield from keyword.lines(dialect)
         yield "*END STEP\n"

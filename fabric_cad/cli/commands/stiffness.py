@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ..composite_options import BoxOptions, declare_box
 from ..options import Command, declare_mesh, declare_rows
@@ -17,6 +18,7 @@ class StiffnessOptions(BoxOptions):
     """Rows, their meshes and boxes, and what is asked for beside the stiffness."""
 
     plate: bool = False
+    deck: str | None = None
 
 
 def declare(parser: argparse.ArgumentParser) -> None:
@@ -29,6 +31,11 @@ def declare(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the cell as a plate with free floor and ceiling too: A, B and D",
     )
+    parser.add_argument(
+        "--deck",
+        choices=("calculix", "abaqus"),
+        help="write the same six load cases as a deck in a solver's dialect, and compute nothing",
+    )
 
 
 def run(options: StiffnessOptions, voice: Voice) -> int:
@@ -40,18 +47,15 @@ def make(name: str, options: StiffnessOptions, voice: Voice) -> None:
     """Homogenise the composite of one row into OUT/<row>."""
     from ...cell.pipeline import Stages
     from ...composite.stiffness.report import summary
-    from ...composite.stiffness.run import make_stiffness
+    from ...composite.stiffness.run import make_deck, make_stiffness
 
     row = find_row(name, options, voice)
-    report = make_stiffness(
-        row,
-        options.families,
-        options.out,
-        mesh=options.mesh,
-        options=options.box,
-        plate=options.plate,
-        stages=Stages(voice.stage),
-    )
+    how: dict[str, Any] = {"mesh": options.mesh, "options": options.box, "stages": Stages(voice.stage)}
+    if options.deck:
+        voice.files([make_deck(row, options.families, options.out, dialect=options.deck, **how)])
+        return
+
+    report = make_stiffness(row, options.families, options.out, plate=options.plate, **how)
     voice.warn(report.warnings)
     voice.summary(summary(report))
     voice.files(Path(options.out) / name / f"stiffness.{kind}" for kind in ("json", "csv", "png", "pdf", "pvd"))

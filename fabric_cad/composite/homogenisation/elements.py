@@ -117,6 +117,6 @@ def _to_skfem() -> tuple[np.ndarray, np.ndarray]:
 
 def _scikit_fem():
     """The package scikit-fem, which takes half a second to import."""
-    import skfem  # type: ignore[import-untyped]
+    import skfem
 
     return skfem

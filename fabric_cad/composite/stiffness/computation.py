@@ -37,8 +37,8 @@ _BYTES = 9000  # a hexahedron needs, measured
 
 
 @dataclass(frozen=True, eq=False)
-class CompositeStiffness:
-    """A row's composite cell, what its elements are made of, and what it is like from far away.
+class CompositeModel:
+    """A row's composite cell and what it is made of.
 
     ``fractions`` (elements,) are the yarns' fibre volume fractions, 0 in the matrix, NaN where not known;
     ``quality`` (elements,) the scaled Jacobian.
@@ -51,9 +51,6 @@ class CompositeStiffness:
     quality: np.ndarray
     constituents: Constituents
     fractions: np.ndarray
-    materials: Materials
-    effective: Effective
-    plate: Plate | None
 
     @property
     def fabric(self) -> SolvedFabric:
@@ -61,20 +58,23 @@ class CompositeStiffness:
         return self.solved[self.row.names[0]]
 
 
-def compute_stiffness(
-    row: Family,
-    families: str | Path,
-    *,
-    mesh: Mapping[str, Any],
-    options: CompositeOptions,
-    plate: bool,
-    stages: Stages,
-) -> CompositeStiffness:
-    """Homogenise the composite of a table of one row, with the ``composite.toml`` of a folder.
+@dataclass(frozen=True, eq=False)
+class CompositeStiffness:
+    """A composite, the materials of its elements, and what it is like from far away, as a plate too or not."""
 
-    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`.
-    Raises :class:`InputError` for what is wrong in the input or would not fit in memory, :class:`SolverError` where
-    the equations are not solved.
+    model: CompositeModel
+    materials: Materials
+    effective: Effective
+    plate: Plate | None
+
+
+def composite_model(
+    row: Family, families: str | Path, *, mesh: Mapping[str, Any], options: CompositeOptions, stages: Stages
+) -> CompositeModel:
+    """The composite of a table of one row, with the ``composite.toml`` of a folder.
+
+    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`. Raises :class:`InputError`
+    for what is wrong in the input.
     """
     (name,) = row.names
     constituents = read_constituents(families, name)
@@ -86,11 +86,22 @@ def compute_stiffness(
     with stages("mesh"):
         cell = mesh_composite(fabric, used, options)
         quality = mesh_quality(cell.mesh).scaled_jacobian
-    _refuse_too_large(len(cell.mesh.hexahedra))
-
-    with stages("materials"):
+    with stages("fibres"):
         fractions = element_fractions(cell.mesh, fabric, sections)
-        materials = element_materials(cell.mesh, fractions, constituents)
+
+    return CompositeModel(row, solved, used, cell, quality, constituents, fractions)
+
+
+def compute_stiffness(model: CompositeModel, *, plate: bool, stages: Stages) -> CompositeStiffness:
+    """Homogenise a composite, with ``plate`` as a plate too.
+
+    Raises :class:`InputError` where it would not fit in memory, :class:`SolverError` where the equations are not
+    solved.
+    """
+    cell, fabric = model.cell, model.fabric
+    _refuse_too_large(len(cell.mesh.hexahedra))
+    with stages("materials"):
+        materials = element_materials(cell.mesh, model.fractions, model.constituents)
     with stages("homogenise"):
         effective = homogenise(periodic_mesh(cell, fabric), materials)
     bent = None
@@ -98,7 +109,7 @@ def compute_stiffness(
         with stages("plate"):
             bent = homogenise_plate(periodic_mesh(cell, fabric, through=False), materials)
 
-    return CompositeStiffness(row, solved, used, cell, quality, constituents, fractions, materials, effective, bent)
+    return CompositeStiffness(model, materials, effective, bent)
 
 
 def periodic_mesh(cell: CompositeCell, fabric: SolvedFabric, through: bool = True) -> PeriodicMesh:

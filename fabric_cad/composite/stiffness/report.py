@@ -61,9 +61,9 @@ class StiffnessReport:
 def stiffness_report(computed: CompositeStiffness, seconds: Mapping[str, float]) -> StiffnessReport:
     """The report of a computation; ``seconds`` by stage."""
     effective = computed.effective
-    table = computed.row
+    table = computed.model.row
     return StiffnessReport(
-        row=computed.fabric.name,
+        row=computed.model.fabric.name,
         C_MPa=effective.stiffness.tolist(),
         S_per_MPa=np.linalg.inv(effective.stiffness).tolist(),
         constants=constants(effective.stiffness),
@@ -74,12 +74,12 @@ def stiffness_report(computed: CompositeStiffness, seconds: Mapping[str, float])
         reuss_MPa=effective.reuss.tolist(),
         plate=_plate(computed),
         yarn=_yarn(computed),
-        matrix=asdict(computed.constituents.matrix),
+        matrix=asdict(computed.model.constituents.matrix),
         mesh=_mesh(computed),
         solver=_solver(computed),
         warnings=_warnings(computed),
         seconds={name: round(value, 4) for name, value in seconds.items()},
-        origin=trace(table, computed.options),
+        origin=trace(table, computed.model.options),
     )
 
 
@@ -153,10 +153,10 @@ def _plate(computed: CompositeStiffness) -> dict[str, Any] | None:
 
 def _yarn(computed: CompositeStiffness) -> dict[str, Any]:
     """What the yarns were taken to be, and where from."""
-    constituents = computed.constituents
+    constituents = computed.model.constituents
     given = {key: value for key, value in asdict(constituents.yarn).items() if value not in (None, "")}
     given.pop("own_fraction")
-    fractions = computed.fractions[~computed.cell.in_matrix]
+    fractions = computed.model.fractions[~computed.model.cell.in_matrix]
     known = not np.isnan(fractions).any()
     return {
         "constants_by": f"given: {', '.join(ELASTIC)}" if constituents.yarn.law else METHOD,
@@ -168,15 +168,15 @@ def _yarn(computed: CompositeStiffness) -> dict[str, Any]:
 
 
 def _mesh(computed: CompositeStiffness) -> dict[str, Any]:
-    cell, volumes = computed.cell, computed.effective.response.integrals.volumes[0]
+    cell, volumes = computed.model.cell, computed.effective.response.integrals.volumes[0]
     matrix = cell.in_matrix
-    fibre = float(volumes @ computed.fractions / volumes.sum())
+    fibre = float(volumes @ computed.model.fractions / volumes.sum())
     return {
         "hexahedra": len(cell.mesh.hexahedra),
         "nodes": len(cell.mesh.points),
         "min_scaled_jacobian": {
-            "matrix": float(computed.quality[matrix].min()),
-            "yarns": float(computed.quality[~matrix].min()),
+            "matrix": float(computed.model.quality[matrix].min()),
+            "yarns": float(computed.model.quality[~matrix].min()),
         },
         "box_mm": cell.size.tolist(),
         "margin_mm": cell.margin,
@@ -199,8 +199,8 @@ def _solver(computed: CompositeStiffness) -> dict[str, Any]:
 
 
 def _warnings(computed: CompositeStiffness) -> list[str]:
-    constituents, row = computed.constituents, computed.row
-    warnings = list(map(str, implausible(row, computed.solved.columns)))
+    constituents, row = computed.model.constituents, computed.model.row
+    warnings = list(map(str, implausible(row, computed.model.solved.columns)))
     own, fibre = float(row.measured["fibre_density_g_cm3"][0]), constituents.fibre
     if fibre and fibre.density_g_cm3 and abs(own / fibre.density_g_cm3 - 1) > _DENSITIES:
         told = f"the table gives its fibres {own:g} g/cm3, {constituents.path} {fibre.density_g_cm3:g}"

@@ -12,7 +12,7 @@ from ...measured.tables import Family, expect_row
 from ...support.interrupts import uninterrupted
 from ...support.staging import staged
 from ..options import USUAL, CompositeOptions
-from .computation import CompositeStiffness, compute_stiffness
+from .computation import CompositeStiffness, composite_model, compute_stiffness, periodic_mesh
 from .report import StiffnessReport, stiffness_report, write_table
 
 NAME = "stiffness"
@@ -39,13 +39,49 @@ def make_stiffness(
     expect_row(row)
     stages = stages or Stages()
     with staged(Path(out) / row.names[0], renew_digests) as folder:
-        computed = compute_stiffness(row, families, mesh=mesh or {}, options=options, plate=plate, stages=stages)
+        model = composite_model(row, families, mesh=mesh or {}, options=options, stages=stages)
+        computed = compute_stiffness(model, plate=plate, stages=stages)
         _write(computed, folder, stages)
         report = stiffness_report(computed, stages.seconds)
         write_table(report, folder / f"{NAME}.csv")
         write_traced(report.content(), folder / f"{NAME}.json")
 
     return report
+
+
+def make_deck(
+    row: Family,
+    families: str | Path,
+    out: str | Path,
+    *,
+    dialect: str,
+    mesh: Mapping[str, Any] | None = None,
+    options: CompositeOptions = USUAL,
+    stages: Stages | None = None,
+) -> Path:
+    """Write the six load cases as ``stiffness.inp`` for CalculiX or Abaqus, and compute nothing; its place.
+
+    Arguments as those of :func:`make_stiffness`.
+    """
+    from .deck import write_stiffness_deck
+
+    expect_row(row)
+    (name,) = row.names
+    stages = stages or Stages()
+    with staged(Path(out) / name, renew_digests) as folder:
+        model = composite_model(row, families, mesh=mesh or {}, options=options, stages=stages)
+        with stages("write deck"):
+            write_stiffness_deck(
+                model.cell,
+                periodic_mesh(model.cell, model.fabric),
+                model.fractions,
+                model.constituents,
+                folder / f"{NAME}.inp",
+                title=f"stiffness of the composite cell of {name}",
+                dialect=dialect,
+            )
+
+    return Path(out) / name / f"{NAME}.inp"
 
 
 def _write(computed: CompositeStiffness, folder: Path, stages: Stages) -> None:
@@ -58,4 +94,4 @@ def _write(computed: CompositeStiffness, folder: Path, stages: Stages) -> None:
     with stages("picture"):
         from ...pictures.plots import plot_directions, save_figure
 
-        save_figure(plot_directions(computed.effective.stiffness), folder / f"{NAME}.png", computed.fabric.name)
+        save_figure(plot_directions(computed.effective.stiffness), folder / f"{NAME}.png", computed.model.fabric.name)

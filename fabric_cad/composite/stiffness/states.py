@@ -30,11 +30,11 @@ _UNITS = {
 
 def write_states(computed: CompositeStiffness, path: Path) -> list[Path]:
     """Write every load case and ``path`` (``.pvd``), which names them; all files written."""
-    return write_series(computed.cell.mesh, _states(computed), path, _UNITS)
+    return write_series(computed.model.cell.mesh, _states(computed), path, _UNITS)
 
 
 def _states(computed: CompositeStiffness) -> Iterator[State]:
-    response, mesh = computed.effective.response, computed.cell.mesh
+    response, mesh = computed.effective.response, computed.model.cell.mesh
     axes = mesh.fibre_axes()
     fluctuations = np.empty((len(mesh.points), 3, 6))
     fluctuations[mesh.hexahedra] = response.fluctuations[response.integrals.corners]
@@ -50,9 +50,9 @@ def _states(computed: CompositeStiffness) -> Iterator[State]:
                 "strain": strain[:, _PARAVIEW],
                 "stress": stress[:, _PARAVIEW],
                 "fibre_stress": np.einsum("ni,nij,nj->n", axes, _tensors(stress), axes),
-                "fibre_fraction": computed.fractions,
+                "fibre_fraction": computed.model.fractions,
             },
-            facts={"row": computed.fabric.name, "load": name, "mean_strain": STRAIN},
+            facts={"row": computed.model.fabric.name, "load": name, "mean_strain": STRAIN},
         )
 
 
