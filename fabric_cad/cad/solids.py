@@ -31,13 +31,13 @@ def sweep(path: Trajectory, sections: tuple[Section, ...], lattice: Lattice = AS
 
 def solid_of(surface: Skin, lattice: Lattice = AS_WOVEN) -> cq.Solid:
     """The solid bounded by a skin and its two end sections."""
-    faces = [_face(patch, surface, lattice) for patch in surface.patches]
-    open_shell, rim = _sew(faces)
+    faces = [face_of(patch, surface, lattice) for patch in surface.patches]
+    open_shell, rim = sew(faces)
 
     along = lattice.woven_coordinate(surface.direction.axis)
     places = surface.planes[0].place, surface.planes[-1].place
     ends = [_cap(rim, along, place) for place in places]
-    shell, _ = _sew([*open_shell.Faces(), *ends])
+    shell, _ = sew([*open_shell.Faces(), *ends])
 
     solid = cq.Solid.makeSolid(shell) if isinstance(shell, cq.Shell) else None
     if solid is None or not solid.isValid():
@@ -46,7 +46,7 @@ def solid_of(surface: Skin, lattice: Lattice = AS_WOVEN) -> cq.Solid:
     return solid
 
 
-def _face(patch: Patch, surface: Skin, lattice: Lattice) -> cq.Face:
+def face_of(patch: Patch, surface: Skin, lattice: Lattice) -> cq.Face:
     """The face of a patch, with the patch's own poles, where the lattice puts them."""
     t, v, z, weight = np.moveaxis(patch.poles, 2, 0)
     plan = (t, v + surface.axis) if surface.direction == Direction.WEFT else (v + surface.axis, t)
@@ -82,7 +82,7 @@ def knots_and_times(knots: np.ndarray) -> tuple[TColStd_Array1OfReal, TColStd_Ar
     return values, multiplicities
 
 
-def _sew(faces: list[cq.Face]) -> tuple[cq.Shape, list[cq.Edge]]:
+def sew(faces: list[cq.Face]) -> tuple[cq.Shape, list[cq.Edge]]:
     """The faces sewn, and those of its edges that bound one face only, in its order."""
     sewing = BRepBuilderAPI_Sewing(_SEWING_TOLERANCE)
     for face in faces:

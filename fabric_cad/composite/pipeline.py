@@ -22,13 +22,13 @@ from .constituents import read_constituents
 from .fibres import fibre_sections
 from .matrix import mesh_composite
 from .options import USUAL, CompositeOptions
-from .report import Figures, composite_report, figures_of
+from .report import Figures, composite_report, figures_of, solids_report
 from .spacing import composite_mesh_options
 
 NAME = "composite"
 """What all files of a composite cell are called."""
 
-KINDS = ("msh", "inp", "vtu", "png", "json")
+KINDS = ("step", "msh", "inp", "vtu", "png", "json")
 
 
 def make_composite(
@@ -69,7 +69,9 @@ def make_composite(
         with stages("picture"):
             _draw(cell, folder / f"{NAME}.png", name)
 
-        report = composite_report(fabric, options, cell, written, figures)
+        volumes = _write_step(fabric, cell, folder / f"{NAME}.step", stages)
+
+        report = composite_report(fabric, options, cell, written, figures) | solids_report(volumes, cell)
         report["seconds"] = {stage: round(seconds, 4) for stage, seconds in stages.seconds.items()}
         report |= trace(row, fineness)
         report["warnings"] = [*map(str, implausible(row, table.columns)), *warnings]
@@ -89,6 +91,20 @@ def _fractions(
     except InputError as error:
         unknown = np.where(cell.in_matrix, 0.0, np.nan)
         return unknown, [f"no fibre fractions: {problem}" for problem in error.problems]
+
+
+def _write_step(fabric: SolvedFabric, cell: CompositeCell, path: Path, stages: Stages) -> dict[str, float]:
+    """Write the solids of yarns and matrix; their volumes, mm3, as read back."""
+    with stages("load CadQuery"), uninterrupted():
+        from ..cad import read_step
+        from .solids import build_composite, checked_volumes
+
+    with stages("solids"):
+        solids = build_composite(fabric, cell.size)
+    with stages("write STEP"):
+        solids.write_step(path)
+    with stages("inspect STEP"):
+        return checked_volumes(read_step(path), cell.size)
 
 
 def _write_msh(cell: CompositeCell, path: Path):

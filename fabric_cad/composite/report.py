@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,6 +82,18 @@ def composite_report(
         "closed_wedge_mm": cell.closed_wedge,
         "yarn_volume_fraction": float(volumes[~in_matrix].sum() / box),
         "fibre_volume_fraction": None if np.isnan(fibre) else fibre,
+    }
+
+
+def solids_report(volumes: Mapping[str, float], cell: CompositeCell) -> dict:
+    """What the report tells of the solids, from their volumes by name, mm3."""
+    box = float(cell.size.prod())
+    return {
+        "solids": {
+            "matrix_mm3": volumes[MATRIX.name],
+            "yarns_mm3": sum(volume for name, volume in volumes.items() if name != MATRIX.name),
+            "volume_error": sum(volumes.values()) / box - 1,
+        }
     }
 
 

@@ -66,7 +66,7 @@ def test_every_report_of_the_folder_has_the_digests(folder):
     for name, digest in own.items():
         if name != "report.json":
             assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest == cell[name]
-    assert {f"composite.{kind}" for kind in ("msh", "inp", "vtu", "png")} <= own.keys()
+    assert {f"composite.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")} <= own.keys()
     assert "composite.json" in cell
 
 
@@ -88,6 +88,19 @@ def test_the_mesh_file_names_bodies_faces_and_interfaces(folder, mesh):
     assert counts["z_min"] == counts["z_max"] == (2 * (6 + 4)) ** 2
     assert counts["x_min"] == counts["x_max"] and counts["y_min"] == counts["y_max"]
     assert counts["weft_1_contact"] == 2 * 6 * 6
+
+
+def test_the_solids_are_those_of_the_report(folder):
+    """Exact volumes: the mesh's yarns, with straight edges, are a little smaller."""
+    from fabric_cad.cad import read_step
+
+    report = json.loads((folder / "composite.json").read_text())
+    solids = read_step(folder / "composite.step")
+    assert list(solids) == [*YARNS, "matrix"]
+    box = np.prod(report["box_mm"])
+    assert solids["matrix"].Volume(1e-9) == pytest.approx(report["solids"]["matrix_mm3"])
+    assert report["solids"]["matrix_mm3"] + report["solids"]["yarns_mm3"] == pytest.approx(box, rel=1e-9)
+    assert report["yarn_volume_fraction"] == pytest.approx(report["solids"]["yarns_mm3"] / box, rel=0.03)
 
 
 def test_the_deck_has_the_same_numbers_sets_and_surfaces(folder, mesh):
