@@ -91,6 +91,7 @@ test: $(READY) ## run the tests
 lint: $(READY) ## check the sources
 	@$(BIN)/ruff check -q fabric_cad tests
 	@$(BIN)/ruff format -q --check fabric_cad tests
+	@$(BIN)/python -m mypy --no-error-summary
 
 .PHONY: coverage
 coverage: $(READY) ## run the tests and tell which lines they reach: terminal, build/coverage/index.html

@@ -31,11 +31,12 @@ if TYPE_CHECKING:
 class Stages:
     """Times the stages of a run and tells ``listen`` of each: (name, None) at its start, (name, seconds) at its end."""
 
-    listen: Callable[[str, float | None], None] = lambda name, seconds: None
+    listen: Callable[[str, float | None], None] = lambda _name, _seconds: None
     seconds: dict[str, float] = field(default_factory=dict)
 
     @contextmanager
     def __call__(self, name: str) -> Iterator[None]:
+        """Time the stage of that name, as long as the block lasts."""
         self.listen(name, None)
         start = time.perf_counter()
         yield

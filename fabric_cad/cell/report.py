@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..model.solved import Direction as SolvedDirection
-from ..model.solved import SolvedFabric, point_columns
+from ..model.solved import SolvedDirection, SolvedFabric, point_columns
 from ..weave.directions import Direction
 from ..weave.weaves import Weave
 from .figures import MeshFigures, Volumes

@@ -59,7 +59,7 @@ class Command(Generic[AnyOptions]):
     text: str
     options: type[AnyOptions]
     run: Callable[[AnyOptions, Voice], int]
-    declare: Callable[[argparse.ArgumentParser], None] = lambda parser: None
+    declare: Callable[[argparse.ArgumentParser], None] = lambda _parser: None
 
 
 class UsageError(Exception):

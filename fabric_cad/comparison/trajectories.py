@@ -10,19 +10,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..model.solved import Direction
+from ..model.solved import SolvedDirection
 from ..support.errors import BuildError
 from .profiles import lens_radius
 
-Fall = Callable[[np.ndarray, Direction, Direction], np.ndarray]
+Fall = Callable[[np.ndarray, SolvedDirection, SolvedDirection], np.ndarray]
 
 
-def sinusoidal(u: np.ndarray, solved: Direction, crossed: Direction) -> np.ndarray:
+def sinusoidal(u: np.ndarray, solved: SolvedDirection, crossed: SolvedDirection) -> np.ndarray:
     """A/2 (1 - cos(pi u / a)), mm."""
     return solved.amplitude / 2 * (1 - np.cos(np.pi * u / solved.crossed_spacing))
 
 
-def circular(u: np.ndarray, solved: Direction, crossed: Direction) -> np.ndarray:
+def circular(u: np.ndarray, solved: SolvedDirection, crossed: SolvedDirection) -> np.ndarray:
     """Arc, then its tangent to the mid-gap plane, mm. Raises :class:`BuildError`.
 
     The arc has the radius R of the crossed yarn's lens, so a lens is touched all along it.
@@ -47,6 +47,6 @@ def circular(u: np.ndarray, solved: Direction, crossed: Direction) -> np.ndarray
     return on_arc + np.tan(angle) * np.maximum(u - end, 0.0)
 
 
-def straight_bars(u: np.ndarray, solved: Direction, crossed: Direction) -> np.ndarray:
+def straight_bars(u: np.ndarray, solved: SolvedDirection, crossed: SolvedDirection) -> np.ndarray:
     """A u / a, mm."""
     return solved.amplitude * u / solved.crossed_spacing

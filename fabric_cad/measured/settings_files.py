@@ -16,7 +16,7 @@ Check = tuple[type, Callable, str]
 POSITIVE: Check = (float, lambda v: 0 < v < math.inf, "is not a number above 0")
 POISSON: Check = (float, lambda v: -1 < v < 1, "is not between -1 and 1")
 FINITE: Check = (float, math.isfinite, "is not a finite number")
-TEXT: Check = (str, lambda v: True, "is not a text")
+TEXT: Check = (str, lambda _text: True, "is not a text")
 
 
 class SettingsFile:

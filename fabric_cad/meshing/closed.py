@@ -29,8 +29,9 @@ def yarn_nodes(fabric: SolvedFabric, plan: Plan) -> np.ndarray:
 
 
 def outline_nodes(fabric: SolvedFabric, plan: Plan) -> np.ndarray:
-    """The nodes around every layer of a yarn, in its template's order: (layers, outline, 3),
-    woven coordinates in mm.
+    """Places (layers, outline, 3) of the nodes around every layer of a yarn, woven coordinates in mm.
+
+    They are in the order of its template.
     """
     assert plan.template is not None
     places = np.full((plan.rows[-1] + 1, plan.template.outline, 3), np.nan)

@@ -44,7 +44,7 @@ def point_columns(direction: str) -> list[tuple[str, str, str]]:
 
 
 @dataclass(frozen=True)
-class Direction:
+class SolvedDirection:
     """Solved parameters of the wefts or the warps; lengths mm, parabolas 1/mm.
 
     ``points`` are the six control points (along, z) of Fig. 16 in the paper's frame:
@@ -91,14 +91,15 @@ class SolvedFabric:
     lateral_height: float
     float_gap: str
     fabric_thickness: float
-    weft: Direction
-    warp: Direction
+    weft: SolvedDirection
+    warp: SolvedDirection
 
     @property
-    def directions(self) -> dict[str, Direction]:
+    def directions(self) -> dict[str, SolvedDirection]:
+        """The parameters of the wefts and of the warps."""
         return {"weft": self.weft, "warp": self.warp}
 
-    def crossed(self, direction: str) -> Direction:
+    def crossed(self, direction: str) -> SolvedDirection:
         """The other direction: that of the yarns which ``direction`` crosses."""
         return self.warp if direction == "weft" else self.weft
 
@@ -182,10 +183,10 @@ class _Cells:
         q, v0, left, right = (self.number(f"{direction}_{plateau}_{kind}_{name}") for name in _FREE_SIDE)
         return FreeSide(q, v0, left, right)
 
-    def direction(self, name: str, crossed: str) -> Direction:
+    def direction(self, name: str, crossed: str) -> SolvedDirection:
         """The parameters of the wefts or the warps."""
         end = self.number(f"{name}_between_end_mm")
-        return Direction(
+        return SolvedDirection(
             crossed_spacing=self.number(f"{name}_crossed_spacing_mm"),
             width=self.number(f"{name}_width_mm"),
             thickness=self.number(f"{name}_thickness_mm"),

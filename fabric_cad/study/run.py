@@ -70,7 +70,7 @@ def run_study(
     out: str | Path = "build",
     scheduler: str | None = None,
     workers: int | None = None,
-    listen: Callable[[Progress], None] = lambda progress: None,
+    listen: Callable[[Progress], None] = lambda _progress: None,
 ) -> Counts:
     """Run a study into the folder ``out/<study>``; units that an earlier run has finished are not run again.
 

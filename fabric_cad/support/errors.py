@@ -18,8 +18,9 @@ def printable(text: str) -> str:
 
 
 def quoted(value: object, most: int = 300) -> str:
-    """A value as Python writes it, a text in quotation marks with control characters as escapes; of a long one
-    its beginning.
+    """A value as Python writes it; of a long text its beginning.
+
+    A text stands in quotation marks, with control characters as escapes.
     """
     if isinstance(value, str) and len(value) > most:
         return f"{value[:most]!r}..."

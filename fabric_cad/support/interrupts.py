@@ -55,7 +55,7 @@ def uninterrupted() -> Iterator[None]:
     before = {number: signal.getsignal(number) for number in _SIGNALS}
     held = [number for number, handler in before.items() if handler not in (None, signal.SIG_IGN)]
     for number in held:
-        signal.signal(number, lambda number, frame: sent.append(number))
+        signal.signal(number, lambda number, _frame: sent.append(number))
     try:
         yield
     finally:

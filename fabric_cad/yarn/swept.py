@@ -16,8 +16,10 @@ from .trajectory import Trajectory, trajectory
 
 @dataclass(frozen=True, eq=False)
 class SweptYarn:
-    """One yarn of a fabric's cell: in each control plane stands a section, and the sections
-    are swept along the trajectory (Fig. 9, 11, 12).
+    """One yarn of a fabric's cell.
+
+    In each control plane stands a section, and the sections are swept along the trajectory
+    (Fig. 9, 11, 12).
     """
 
     fabric: SolvedFabric

@@ -112,7 +112,7 @@ def _tiled(fabric: SolvedFabric, direction: Direction, grid: Grid) -> TiledYarns
         return Tiling(*_turned(direction, *shapes), tile, _in_plan(direction, places), yarn)
 
     crossings = tile.ravel(), crossing.ravel(), yarn.ravel()
-    number = np.tile(np.arange(len(codes)), 2)
+    number = np.tile(np.arange(len(codes), dtype=np.int64), 2)
     end = np.repeat([0, -1], len(codes))  # the first crossing's start, the last one's end
     capped = tile[number, end] + np.where(end == 0, 0, len(used))
     return TiledYarns(

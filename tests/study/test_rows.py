@@ -127,26 +127,28 @@ def test_volumes_are_integrals_of_the_sections(seed, float_gap):
         assert volumes[direction][0] == pytest.approx(exact, rel=1e-9)
 
 
-def volume_of(surface):
-    """Volume under a skin's upper patches less that under the lower ones, by Gauss quadrature over their knot spans."""
+def rates_of(patch, u, v, order_u, order_v):
+    """Points of a patch, or derivatives of some orders, on the grid u x v."""
     from scipy.interpolate import BSpline
 
+    (ku, du), (kv, dv) = patch.along, patch.across
+    rows = BSpline(ku, patch.poles[..., :3], du)(u, order_u)
+    return BSpline(kv, rows.transpose(1, 0, 2), dv)(v, order_v).transpose(1, 0, 2)
+
+
+def volume_of(surface):
+    """Volume under a skin's upper patches less that under the lower ones, by Gauss quadrature over their knot spans."""
     nodes, weights = np.polynomial.legendre.leggauss(6)
     volume = 0.0
     for patch in surface.patches:
         sign = {"top": 1, "bottom": -1}.get(patch.side) or (1 if patch.side.endswith("upper") else -1)
         if patch.side in ("left", "right"):
             continue  # upright
-        (ku, du), (kv, dv) = patch.along, patch.across
+        (ku, _), (kv, _) = patch.along, patch.across
         for u0, u1 in zip(np.unique(ku), np.unique(ku)[1:]):
             for v0, v1 in zip(np.unique(kv), np.unique(kv)[1:]):
                 u, v = (u0 + u1 + (u1 - u0) * nodes) / 2, (v0 + v1 + (v1 - v0) * nodes) / 2
-
-                def grid(order_u, order_v):
-                    rows = BSpline(ku, patch.poles[..., :3], du)(u, order_u)
-                    return BSpline(kv, rows.transpose(1, 0, 2), dv)(v, order_v).transpose(1, 0, 2)
-
-                points, along, across = grid(0, 0), grid(1, 0), grid(0, 1)
+                points, along, across = (rates_of(patch, u, v, *orders) for orders in ((0, 0), (1, 0), (0, 1)))
                 plan = along[..., 0] * across[..., 1] - along[..., 1] * across[..., 0]
                 scale = (u1 - u0) * (v1 - v0) / 4
                 volume += sign * scale * float(weights @ (points[..., 2] * plan) @ weights)

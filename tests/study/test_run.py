@@ -310,7 +310,7 @@ def test_three_kills_leave_the_same_table(here):
     for _ in range(3):
         before = lines()
         process = start()
-        wait_for(lambda: lines() > before, process)
+        wait_for(lambda before=before: lines() > before, process)
         time.sleep(chance.uniform(0.0, 0.3))
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -57,7 +58,7 @@ def plot_edges(fabric: SolvedFabric, axes: Axes, direction: str = "weft", number
     along, midline = _profile(swept, lambda _: 0.0)
     axes.plot(along, midline, ":", color="black", label="midline")
     for edge, end, style in (("left", 0, "-"), ("right", -1, "--")):
-        _, heights = _profile(swept, lambda section: _edge_height(section, edge, end))
+        _, heights = _profile(swept, partial(_edge_height, edge=edge, end=end))
         axes.plot(along, heights, style, color=colour, label=f"{edge} edge")
 
     _shade_float_gaps(fabric, axes, yarn)

@@ -32,9 +32,9 @@ def plot_model_cuts(
     number: int = 1,
     stretch: float = 3.0,
 ) -> None:
-    """The same cut along a yarn's axis for every model of
-    :data:`fabric_cad.comparison.models.MODELS`, one each on ``axes``.
+    """The same cut along a yarn's axis for every model, one each on ``axes``.
 
+    The models are :data:`fabric_cad.comparison.models.MODELS`.
     Penetrations are red, voids white; z is drawn ``stretch`` times larger.
     """
     for ax, model in zip(axes, MODELS):
@@ -77,9 +77,9 @@ def _model_cut(fabric: SolvedFabric, model: Model, axes: Axes, direction: str, n
 
 
 def plot_gap_maps(fabric: SolvedFabric, axes: Sequence[Axes], weft: int = 1, warp: int = 1):
-    """The gap over one crossing for every model of
-    :data:`fabric_cad.comparison.models.MODELS`, one each on ``axes``.
+    """The gap over one crossing for every model, one each on ``axes``.
 
+    The models are :data:`fabric_cad.comparison.models.MODELS`.
     Penetrations are red, voids blue; a line goes around where the yarns touch. Returns the last
     map, for a colour bar; the colours end at a quarter of the thinner yarn's thickness.
     """
