@@ -100,7 +100,7 @@ def tile_patches(fabric: SolvedFabric, direction: Direction, code: int) -> tuple
 def _tiled(fabric: SolvedFabric, direction: Direction, grid: Grid) -> TiledYarns:
     codes = tile_codes(fabric.weave.interlacement(), direction)
     used = np.unique(codes)
-    tile = np.searchsorted(used, codes)
+    tile = np.asarray(np.searchsorted(used, codes))
     shape = evaluated([tile_patches(fabric, direction, int(code)) for code in used], grid)
 
     along = fabric.directions[direction].crossed_spacing
