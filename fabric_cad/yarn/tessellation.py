@@ -100,12 +100,12 @@ def tile_patches(fabric: SolvedFabric, direction: Direction, code: int) -> tuple
 def _tiled(fabric: SolvedFabric, direction: Direction, grid: Grid) -> TiledYarns:
     codes = tile_codes(fabric.weave.interlacement(), direction)
     used = np.unique(codes)
-    tile = np.asarray(np.searchsorted(used, codes))
+    tile = np.searchsorted(used, codes)
     shape = evaluated([tile_patches(fabric, direction, int(code)) for code in used], grid)
 
     along = fabric.directions[direction].crossed_spacing
     axis = (np.arange(len(codes)) + 0.5) * fabric.crossed(direction).crossed_spacing
-    yarn, crossing = np.indices(codes.shape)
+    yarn, crossing = np.meshgrid(*map(np.arange, codes.shape), indexing="ij")
 
     def tiling(shapes: Shapes, tile: np.ndarray, crossing: np.ndarray, yarn: np.ndarray) -> Tiling:
         places = np.column_stack([crossing * along, axis[yarn], np.zeros(yarn.size)])
