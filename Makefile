@@ -59,6 +59,10 @@ voxels: $(READY) ## WEAVE=row: its composite on a regular grid (OPTIONS='--cells
 show: $(READY) ## WEAVE=row: the same cell in an interactive window
 	@$(BIN)/fabric-cad show $(WEAVE)
 
+.PHONY: design
+design: $(READY) ## WEAVE=row: a page in the browser that draws the fabric while its numbers change
+	@$(BIN)/fabric-cad design $(WEAVE) $(OPTIONS)
+
 .PHONY: page
 page: $(READY) ## WEAVE=row: its cell as one HTML file to look at, build/<row>/page.html
 	@$(BIN)/fabric-cad page $(WEAVE)

@@ -21,6 +21,8 @@ DOORS = {
     "pyarrow": {"study/table.py"},
     "meshio": {"meshing/exchange.py"},
     "python_calamine": {"measured/workbooks.py"},
+    "trame": {"page/server.py"},
+    "aiohttp": {"page/guard.py"},
 }
 
 
@@ -51,6 +53,10 @@ def test_heavy_packages_stay_behind_their_doors(path):
         (
             "import fabric_cad; fabric_cad.run_study",
             ("cadquery", "OCP", "gmsh", "scipy", "pyvista", "dask", "distributed", "pyarrow", "matplotlib"),
+        ),
+        (
+            "from fabric_cad.page.desk import Desk; from fabric_cad.page.scene import scene",
+            ("cadquery", "OCP", "gmsh", "pyvista", "vtkmodules", "matplotlib", "trame", "dask"),
         ),
         (
             "from fabric_cad.cli import main; main(['list', '-q'])",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..options import Command
-from . import cell, composite, init, listing, loads, page, show, solve, stiffness, study, validate, voxels, wif
+from . import cell, composite, design, init, listing, loads, page, show, solve, stiffness, study, validate, voxels, wif
 
 
 def commands() -> tuple[Command[Any], ...]:
@@ -22,6 +22,7 @@ def commands() -> tuple[Command[Any], ...]:
         study.COMMAND,
         show.COMMAND,
         page.COMMAND,
+        design.COMMAND,
         wif.COMMAND,
         init.COMMAND,
     )
