@@ -30,6 +30,13 @@ from .nodes import Nodes
 from .sheets import Sheets
 from .yarns import Strip, of_direction
 
+_BULGE = 3.5
+"""Beside arcs the sheets' heights go as this power of the way to the apex.
+
+An arc leaves the yarn's bottom with its slope. So do the sheets, hugging the fabric's faces before they come together,
+or they would lie along the arc: on the row twill22_round straight ones make corners of 4 degrees.
+"""
+
 Corners = Mapping[tuple[int, int, bool, bool], np.ndarray]
 """(weft, warp, right of the warp, right of the weft) to the nodes (n + 1 lines of x, n + 1 lines of y) of a sheet."""
 
@@ -63,7 +70,7 @@ def triangle(reach: int, half: int) -> Template:
     """Quadrilaterals of a strip's section with ``reach`` columns and a base of 2 ``half`` edges.
 
     Outline counter-clockwise from the base's lower end: lower sheet, apex, upper sheet, base. Three patches
-    meet in a point a third of the way from the base's middle to the apex.
+    meet in a point between the base's middle and the line where the last ``half`` columns begin.
     """
     outline = 2 * reach + 2 * half
     node = np.eye(outline)
@@ -71,7 +78,7 @@ def triangle(reach: int, half: int) -> Template:
     base = np.vstack([node[2 * reach :], node[:1]])[::-1]
 
     split = reach - half
-    centre = (2 * base[half] + lower[-1]) / 3
+    centre = 0.3 * base[half] + 0.35 * (lower[split] + upper[split])
     to_base = straight(base[half], centre, split)
     to_lower, to_upper = straight(lower[split], centre, half), straight(centre, upper[split], half)
     beneath = coons(lower[: split + 1], to_base, base[: half + 1], to_lower)
@@ -133,11 +140,12 @@ def lay_resin(
             taken[beside], is_last[beside] = corner[1:], False
 
     share = np.abs(across.places[lines] - across.places[lines[0]])
-    share = (share / share[-1])[:, None]
+    share = np.column_stack([share, share, share]) / share[-1]
+    share[:, 2] **= _BULGE if across.side else 1.0
     for sheet, other in ((lower, upper), (upper, lower)):
         alone = np.flatnonzero((sheet[:, -1] < 0) & (other[:, -1] >= 0))
         sheet[alone, -1] = other[alone, -1]
-        sheet[alone, 1:-1] = nodes.add(_straight(nodes.points, sheet[alone], share)[:, 1:-1])
+        sheet[alone, 1:-1] = nodes.add(_lines_to_apex(nodes.points, sheet[alone], share)[:, 1:-1])
     for number in range(along.yarns):
         _between((lower, upper), nodes, share, along, number)
     return Resin(strip.direction, right, lower, upper, strip.side(right)[:-1], lines, is_lowest, is_highest)
@@ -148,8 +156,8 @@ def _between(
 ) -> None:
     """Fill in the sheets (stations, reach + 1) in the middle of the gap after a crossing, in place.
 
-    How far the apex is from mid-height of the yarn's side, and the sheets from straight lines to it, goes over
-    from one end of the middle part to the other.
+    How far the apex is from mid-height of the yarn's side, and the sheets from their :func:`_lines_to_apex`, goes
+    over from one end of the middle part to the other.
     """
     reach = len(share) - 1
     lines = along.first(crossing) + along.columns + np.arange(reach, along.between - reach + 1)
@@ -165,14 +173,17 @@ def _between(
     apex = nodes.add(middle[1:-1] + (1 - way) * off[0] + way * off[1])
 
     for sheet in sheets:
-        bend = points[sheet[ends]] - _straight(points, sheet[ends], share)
+        bend = points[sheet[ends]] - _lines_to_apex(points, sheet[ends], share)
         sheet[inner, -1] = apex
         blend = (1 - way[..., None]) * bend[0] + way[..., None] * bend[1]
-        sheet[inner, 1:-1] = nodes.add((_straight(nodes.points, sheet[inner], share) + blend)[:, 1:-1])
+        sheet[inner, 1:-1] = nodes.add((_lines_to_apex(nodes.points, sheet[inner], share) + blend)[:, 1:-1])
 
 
-def _straight(points: np.ndarray, sheet: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Places (stations, reach + 1, 3) on the straight lines from the yarn to the apex of a sheet."""
+def _lines_to_apex(points: np.ndarray, sheet: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Places (stations, reach + 1, 3) on lines from the yarn to the apex of a sheet.
+
+    ``share`` (reach + 1, 3) of the way in x, y and z.
+    """
     start, end = points[sheet[:, :1]], points[sheet[:, -1:]]
     return (1 - share) * start + share * end
 

@@ -17,7 +17,7 @@ from ..weave.directions import DIRECTIONS, Direction
 _SIDES = 1.5
 """Width of a strip of resin beside a flat side, in heights of the side."""
 
-_OF_HALF_GAP = 0.45
+_OF_HALF_GAP = 0.65
 """Share of half a gap that a strip beside arcs takes, and one beside a flat side at most."""
 
 

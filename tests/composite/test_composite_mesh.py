@@ -168,7 +168,7 @@ def test_the_matrix_of_lenticular_rows_is_well_shaped(name):
     assert quality.scaled_jacobian.min() >= 0.6
 
 
-@pytest.mark.parametrize("name", ["plain_flat", "plain_round"])
+@pytest.mark.parametrize("name", ["plain_flat", "plain_round", "twill22_round"])
 def test_the_matrix_beside_flat_and_round_sides_is_well_shaped(name):
     cell = mesh_composite(FABRICS[name], composite_mesh_options(FABRICS[name]))
     quality = hexahedra_quality(cell.mesh.points, cell.mesh.hexahedra[cell.in_matrix])
