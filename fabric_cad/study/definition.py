@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..cell.pipeline import find_row
+from ..composite.constituents import read_constituents
 from ..measured.columns import is_safe_name
 from ..measured.family import Family
 from ..simulation.loads import load_cases
@@ -17,6 +18,7 @@ from ..support.toml_files import read_toml
 from .design import DESIGNS, RANDOM
 from .factor_reader import read_factors
 from .factors import Factor, levels
+from .figures import STIFFNESS
 from .names import figure_fault
 from .study_file import StudyFile
 from .units import Work, depths
@@ -77,7 +79,7 @@ def read_study(path: str | Path, families: str | Path = "families") -> Study:
 
     base = _base(file, found.get("base"), families)
     factors: dict[str, Factor] = {}
-    settings = None
+    settings = constituents = None
     if base is not None:
         _check_mesh(file, base, mesh)
         factors = read_factors(file, base, found.get("factors", {}), design)
@@ -85,6 +87,8 @@ def read_study(path: str | Path, families: str | Path = "families") -> Study:
             _check_size(file, factors, design, found.get("samples", 0))
         if depth in load_cases():
             settings = read_settings(families, base.names[0])
+        elif depth == STIFFNESS:
+            constituents = read_constituents(families, base.names[0])
         if "depth" in found or "depth" not in content:
             _check_figures(file, figures, depth, settings)
 
@@ -97,7 +101,7 @@ def read_study(path: str | Path, families: str | Path = "families") -> Study:
         design=design,
         samples=found.get("samples", 0),
         seed=found.get("seed", 0),
-        work=Work(depth, mesh, float(found.get("limit_seconds", 600.0)), settings),
+        work=Work(depth, mesh, float(found.get("limit_seconds", 600.0)), settings, constituents),
         figures=tuple(figures),
         keep=found.get("keep", False),
     )

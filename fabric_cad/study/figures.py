@@ -8,6 +8,9 @@ from ..model.solved import point_columns
 from ..simulation.loads import load_cases
 from ..weave.directions import DIRECTIONS
 
+STIFFNESS = "stiffness"
+"""The depth of a study that goes as far as the composite's stiffness, and the first word of its figures."""
+
 _HEADLINE = (
     "identified.fabric_thickness_mm",
     "identified.weft.crimp",
@@ -19,6 +22,10 @@ _HEADLINE = (
     "volumes.weft_fibre_fraction",
     "volumes.warp_fibre_fraction",
     "mesh.min_scaled_jacobian",
+    "stiffness.Ex",
+    "stiffness.Ey",
+    "stiffness.Ez",
+    "stiffness.Gxy",
 )
 
 

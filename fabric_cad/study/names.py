@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 
+from ..composite.stiffness.report import FIGURES
 from ..model.closing import CLOSING
 from ..model.solved import point_columns
 from ..simulation.loads import load_cases
@@ -11,6 +12,7 @@ from ..simulation.report import ContactReport
 from ..simulation.settings import Settings
 from ..support.errors import did_you_mean, quoted
 from ..weave.directions import DIRECTIONS
+from .figures import STIFFNESS
 
 _WEAVE = ("over", "under", "step", "wefts", "warps")
 _DIRECTION = ("slope", "p_low", "p_high", "amplitude_mm", "thickness_mm", "width_mm", "spacing_mm", "crimp")
@@ -59,12 +61,14 @@ def figure_names(depth: str, settings: Settings | None = None) -> tuple[str, ...
 
     if depth != "identify":
         names += [f"consistency.{name}" for name in _CONSISTENCY]
-    if depth not in ("identify", "cell"):
+    if depth not in ("identify", "cell", STIFFNESS):
         names += [f"mesh.{name}" for name in _MESH]
     if depth in load_cases():
         known = settings.case(depth).figure_names() if settings is not None else ()
         contact = [field.name for field in fields(ContactReport)]
         names += [f"{depth}.{name}" for name in (*contact, *known)]
+    if depth == STIFFNESS:
+        names += [f"{depth}.{name}" for name in FIGURES]
     return tuple(names)
 
 
@@ -77,6 +81,8 @@ def figure_fault(name: str, depth: str, settings: Settings | None = None) -> str
     case = name.partition(".")[0]
     if case != depth and case in load_cases() and load_cases()[case].is_studied:
         deeper = case
+    if name in figure_names(STIFFNESS):
+        deeper = deeper or STIFFNESS
     if deeper:
         return f"{quoted(name)} is a figure of depth {deeper}, this study is of depth {depth}"
 

@@ -191,7 +191,7 @@ def _digest(study: Study) -> str:
     measured = {name: float(values[0]).hex() for name, values in sorted(study.base.measured.items())}
     parts: list[object] = [__version__, study.base.family, repr(study.base.weaves), study.base.sections]
     parts += [study.base.float_gaps, study.base.thicker, measured]
-    parts += [study.factors, study.design, study.samples, study.seed, study.work, study.figures]
+    parts += [study.factors, study.design, study.samples, study.seed, study.work, *study.work.made_of, study.figures]
     return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 

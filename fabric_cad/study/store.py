@@ -28,7 +28,7 @@ def unit_key(row: Family, work: Work, keep: bool) -> str:
     """Digest of a table of one row and of what is done with it."""
     numbers = {name: float(values[0]).hex() for name, values in row.measured.items()}
     inputs = [__version__, work.depth, sorted(work.mesh.items()), repr(work.settings), keep]
-    inputs += [row.family, repr(row.weaves[0]), row.sections[0], row.float_gaps[0], row.thicker[0]]
+    inputs += [*work.made_of, row.family, repr(row.weaves[0]), row.sections[0], row.float_gaps[0], row.thicker[0]]
     inputs.append(sorted(numbers.items()))
     return hashlib.sha256(json.dumps(inputs).encode()).hexdigest()[:32]
 

@@ -10,20 +10,21 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ..cell.pipeline import Stages, checked_report, make_mesh, make_step, write_report
 from ..cell.traces import trace
+from ..composite.constituents import Constituents
 from ..measured.tables import Family
 from ..simulation.loads import load_cases
 from ..simulation.settings import Settings
 from ..support.errors import FabricCadError, InputError, SolverError
 from ..support.staging import output_errors, staged
 from ..support.working import scratch_folder
-from .figures import flat
+from .figures import STIFFNESS, flat
 
 
 @dataclass(frozen=True)
@@ -42,12 +43,21 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Work:
-    """What is done with every unit: how far it goes, keywords of its mesh, s it may take, materials and loads."""
+    """What is done with every unit: how far it goes, keywords of its mesh, s it may take, materials and loads.
+
+    ``constituents`` are those of a composite, at depth stiffness.
+    """
 
     depth: str
     mesh: Mapping[str, Any]
     limit_seconds: float
     settings: Settings | None = None
+    constituents: Constituents | None = field(default=None, repr=False)
+
+    @property
+    def made_of(self) -> list[str]:
+        """The constituents as text, for digests, wherever they were read from; nothing at other depths."""
+        return [repr(replace(self.constituents, path=""))] if self.constituents else []
 
 
 def _cell(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
@@ -80,6 +90,19 @@ def _load(case: str, row: Family, work: Work, folder: Path, stages: Stages) -> d
     return cell.content() | {case: figures, "options": report.origin["options"]}
 
 
+def _stiffness(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
+    """The report of the cell, and what its composite is like from far away: ``stiffness.Ex`` ..."""
+    from ..composite.stiffness.report import figures
+    from ..composite.stiffness.run import write_stiffness
+
+    if work.constituents is None:
+        raise ValueError("a unit of depth stiffness needs constituents")
+
+    cell = _cell(row, work, folder, stages)
+    report = write_stiffness(row, work.constituents, folder, mesh=work.mesh, stages=stages)
+    return cell | {STIFFNESS: figures(report), "options": report.origin["options"]}
+
+
 Depth = Callable[[Family, Work, Path, Stages], dict]
 """From a row, what is done, a folder for files and a stopwatch to a report."""
 
@@ -87,7 +110,8 @@ Depth = Callable[[Family, Work, Path, Stages], dict]
 def depths() -> dict[str, Depth | None]:
     """How far a study may go, in order; at ``identify`` whole tables at once, see :mod:`fabric_cad.study.run`."""
     studied = [name for name, case in load_cases().items() if case.is_studied]
-    return {"identify": None, "cell": _cell, "mesh": _mesh} | {name: partial(_load, name) for name in studied}
+    loaded = {name: partial(_load, name) for name in studied}
+    return {"identify": None, "cell": _cell, "mesh": _mesh, **loaded, STIFFNESS: _stiffness}
 
 
 _ONE_AT_A_TIME = threading.Lock()

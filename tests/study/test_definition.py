@@ -77,7 +77,7 @@ through = "two"
     assert told == [
         "study.toml:2: desing: unknown key; did you mean design?",
         "study.toml:8: figures: 'all' is not a list",
-        "study.toml:3: depth: 'meshes' is none of identify, cell, mesh, tension; did you mean mesh?",
+        "study.toml:3: depth: 'meshes' is none of identify, cell, mesh, tension, stiffness; did you mean mesh?",
         "study.toml:6: seed: -1 is not at least 0",
         "study.toml:5: samples: 100 is not a power of two, as a Sobol sequence needs; 128 is the nearest",
         "study.toml:7: limit_seconds: 0 is not above 0",

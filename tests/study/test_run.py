@@ -21,7 +21,7 @@ from fabric_cad.model.identification import identify_rows
 from fabric_cad.study import read_study, run_study
 from fabric_cad.study.names import figure_names
 from fabric_cad.study.sensitivity import read_sensitivities
-from fabric_cad.study.store import held
+from fabric_cad.study.store import held, unit_key
 from fabric_cad.study.table import read_table
 from fabric_cad.study.table_figures import identified_figures
 from fabric_cad.support.errors import OutputError
@@ -119,6 +119,8 @@ def test_a_finished_identify_study_is_left_alone(here):
             "'tension.k=3.E11' is no figure of depth tension; did you mean tension.k=",
         ),
         ("cell", "section", "'section' is no figure of depth cell"),
+        ("cell", "stiffness.Ex", "'stiffness.Ex' is a figure of depth stiffness, this study is of depth cell"),
+        ("stiffness", "mesh.nodes", "'mesh.nodes' is a figure of depth mesh, this study is of depth stiffness"),
     ],
 )
 def test_a_figure_that_is_none_is_refused_before_any_unit_runs(here, capsys, depth, figure, told):
@@ -220,6 +222,22 @@ def test_a_mesh_study_on_a_cluster(here, cluster):
     assert (wider.done, wider.refused, wider.before) == (3, 2, 5)
     assert read_table("build/study")["status"].tolist() == ["done", "done", "done", "refused", "refused"]
     assert lines() == 3
+
+
+def test_a_stiffness_study_homogenises_every_fabric_and_knows_its_constituents(here):
+    more = "mesh = { across = 4, crossing = 4, gap = 2 }\nfigures = ['stiffness.Ex']"
+    text = cells("stiffness", more, (2.8, 3.4))
+    assert run_study(study(text), workers=1).done == 2
+    table = read_table("build/study")
+    numbers = {name for name, values in table.items() if name.startswith("stiffness.")}
+    assert numbers == {name for name in figure_names("stiffness") if name.startswith("stiffness.")}
+    assert table["stiffness.Ex"][1] > table["stiffness.Ex"][0] > 10e3  # wider yarns, more fibre
+    assert table["stiffness.Ex"] == pytest.approx(table["stiffness.Ey"], rel=1e-6)
+    assert run_study(study(text), workers=1).before == 2
+
+    constituents, before = Path("families/composite.toml"), study(text)
+    constituents.write_text(constituents.read_text().replace("E_MPa = 3500.0", "E_MPa = 4500.0"))
+    assert unit_key(before.base, before.work, False) != unit_key(before.base, study(text).work, False)
 
 
 @needs_ccx

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from ...model.solved import SolvedFabric, SolvedTable
 from ...support.errors import InputError, Problem
 from ...support.memory import available_memory
 from ..cell import CompositeCell
-from ..constituents import Constituents, read_constituents
+from ..constituents import Constituents
 from ..fibres import fibre_sections
 from ..homogenisation.homogenise import Effective, Materials, Plate, homogenise, homogenise_plate
 from ..homogenisation.periodicity import PeriodicMesh
@@ -69,15 +68,14 @@ class CompositeStiffness:
 
 
 def composite_model(
-    row: Family, families: str | Path, *, mesh: Mapping[str, Any], options: CompositeOptions, stages: Stages
+    row: Family, constituents: Constituents, *, mesh: Mapping[str, Any], options: CompositeOptions, stages: Stages
 ) -> CompositeModel:
-    """The composite of a table of one row, with the ``composite.toml`` of a folder.
+    """The composite of a table of one row.
 
     ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`. Raises :class:`InputError`
     for what is wrong in the input.
     """
     (name,) = row.names
-    constituents = read_constituents(families, name)
     sections = fibre_sections(row, constituents)
     with stages("identify"):
         solved = identify(row)

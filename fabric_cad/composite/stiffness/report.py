@@ -58,6 +58,28 @@ class StiffnessReport:
         return found | origin
 
 
+def figures(report: StiffnessReport) -> dict[str, float]:
+    """The numbers of a report by their names, for a table of many; those that are not known are not there."""
+    found = dict(report.constants)
+    if report.expansion_per_K:
+        found |= {f"expansion_{axis}_per_K": value for axis, value in zip("xyz", report.expansion_per_K)}
+    if report.conductivity_W_per_mK:
+        diagonal = np.diag(report.conductivity_W_per_mK).tolist()
+        found |= {f"conductivity_{axis}_W_per_mK": value for axis, value in zip("xyz", diagonal)}
+    known = {"density_g_cm3": report.density_g_cm3}
+    known |= {name: report.mesh[name] for name in ("yarn_volume_fraction", "fibre_volume_fraction")}
+    return found | {name: value for name, value in known.items() if value is not None}
+
+
+FIGURES = (
+    *("Ex", "Ey", "Ez", "Gxy", "Gxz", "Gyz", "nu_xy", "nu_xz", "nu_yz", "nu_yx", "nu_zx", "nu_zy"),
+    *(f"expansion_{axis}_per_K" for axis in "xyz"),
+    *(f"conductivity_{axis}_W_per_mK" for axis in "xyz"),
+    *("density_g_cm3", "yarn_volume_fraction", "fibre_volume_fraction"),
+)
+"""All names that :func:`figures` may have."""
+
+
 def stiffness_report(computed: CompositeStiffness, seconds: Mapping[str, float]) -> StiffnessReport:
     """The report of a computation; ``seconds`` by stage."""
     effective = computed.effective

@@ -11,6 +11,7 @@ from ...cell.traces import renew_digests, write_traced
 from ...measured.tables import Family, expect_row
 from ...support.interrupts import uninterrupted
 from ...support.staging import staged
+from ..constituents import Constituents, read_constituents
 from ..options import USUAL, CompositeOptions
 from .computation import CompositeStiffness, composite_model, compute_stiffness, periodic_mesh
 from .report import StiffnessReport, stiffness_report, write_table
@@ -39,13 +40,34 @@ def make_stiffness(
     expect_row(row)
     stages = stages or Stages()
     with staged(Path(out) / row.names[0], renew_digests) as folder:
-        model = composite_model(row, families, mesh=mesh or {}, options=options, stages=stages)
-        computed = compute_stiffness(model, plate=plate, stages=stages)
-        _write(computed, folder, stages)
-        report = stiffness_report(computed, stages.seconds)
-        write_table(report, folder / f"{NAME}.csv")
-        write_traced(report.content(), folder / f"{NAME}.json")
+        return write_stiffness(
+            row,
+            read_constituents(families, row.names[0]),
+            folder,
+            mesh=mesh or {},
+            options=options,
+            plate=plate,
+            stages=stages,
+        )
 
+
+def write_stiffness(
+    row: Family,
+    constituents: Constituents,
+    folder: Path,
+    *,
+    mesh: Mapping[str, Any],
+    options: CompositeOptions = USUAL,
+    plate: bool = False,
+    stages: Stages,
+) -> StiffnessReport:
+    """As :func:`make_stiffness`, of given constituents and into a folder that is there."""
+    model = composite_model(row, constituents, mesh=mesh, options=options, stages=stages)
+    computed = compute_stiffness(model, plate=plate, stages=stages)
+    _write(computed, folder, stages)
+    report = stiffness_report(computed, stages.seconds)
+    write_table(report, folder / f"{NAME}.csv")
+    write_traced(report.content(), folder / f"{NAME}.json")
     return report
 
 
@@ -69,7 +91,8 @@ def make_deck(
     (name,) = row.names
     stages = stages or Stages()
     with staged(Path(out) / name, renew_digests) as folder:
-        model = composite_model(row, families, mesh=mesh or {}, options=options, stages=stages)
+        constituents = read_constituents(families, name)
+        model = composite_model(row, constituents, mesh=mesh or {}, options=options, stages=stages)
         with stages("write deck"):
             write_stiffness_deck(
                 model.cell,
