@@ -18,7 +18,8 @@ from ..support.errors import InputError, Problem
 from ..weave.directions import DIRECTIONS, Direction
 from ..yarn.profiles import section_areas, slopes
 from ..yarn.swept import SweptYarn
-from .constituents import CLOSEST_PACKING, FILE, Constituents
+from .constituents import FILE
+from .substances import CLOSEST_PACKING, Constituents
 
 _SAMPLES = 33  # places between two control planes at which a fraction is checked
 

@@ -9,10 +9,10 @@ from ..model.solved import SolvedFabric
 from ..support.errors import InputError, Problem
 from ..weave.bodies import BodyKind
 from ..yarn.swept import swept_yarns
-from .constituents import Constituents
 from .fibres import FibreSections, fibre_fractions
 from .homogenisation.homogenise import Materials
 from .micromechanics import YarnProperties, yarn_properties
+from .substances import Constituents
 from .transverse import expansion_strain, second_order
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .constituents import Constituents, Fibre, Matrix
+from .substances import Constituents, Fibre, Matrix
 from .transverse import Numbers, TransverselyIsotropic
 
 METHOD = "Chamis 1984 (elastic constants, conductivity), Schapery 1968 (expansion)"

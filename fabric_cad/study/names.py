@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 
-from ..composite.stiffness.report import FIGURES
+from ..composite.stiffness.summary import FIGURES
 from ..model.closing import CLOSING
 from ..model.solved import point_columns
 from ..simulation.loads import load_cases

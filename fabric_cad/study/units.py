@@ -17,7 +17,7 @@ from typing import Any
 
 from ..cell.pipeline import Stages, checked_report, make_mesh, make_step, write_report
 from ..cell.traces import trace
-from ..composite.constituents import Constituents
+from ..composite.substances import Constituents
 from ..measured.tables import Family
 from ..simulation.loads import load_cases
 from ..simulation.settings import Settings
@@ -92,8 +92,8 @@ def _load(case: str, row: Family, work: Work, folder: Path, stages: Stages) -> d
 
 def _stiffness(row: Family, work: Work, folder: Path, stages: Stages) -> dict:
     """The report of the cell, and what its composite is like from far away: ``stiffness.Ex`` ..."""
-    from ..composite.stiffness.report import figures
     from ..composite.stiffness.run import write_stiffness
+    from ..composite.stiffness.summary import figures
 
     if work.constituents is None:
         raise ValueError("a unit of depth stiffness needs constituents")

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fabric_cad.composite.constituents import CLOSEST_PACKING, read_constituents
+from fabric_cad.composite.constituents import read_constituents
+from fabric_cad.composite.substances import CLOSEST_PACKING
 from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.support.errors import InputError
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fabric_cad.composite.constituents import CLOSEST_PACKING, Constituents, Fibre, GivenYarn, Matrix
 from fabric_cad.composite.fibres import fibre_fractions, fibre_sections
+from fabric_cad.composite.substances import CLOSEST_PACKING, Constituents, Fibre, GivenYarn, Matrix
 from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.measured.tables import read_families, read_family
 from fabric_cad.model.identification import identify

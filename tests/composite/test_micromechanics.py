@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fabric_cad.composite.constituents import Constituents, Fibre, GivenYarn, Matrix
 from fabric_cad.composite.micromechanics import elastic, thermal_conductivity, thermal_expansion, yarn_properties
+from fabric_cad.composite.substances import Constituents, Fibre, GivenYarn, Matrix
 from fabric_cad.composite.transverse import TransverselyIsotropic, expansion_strain, isotropic, second_order
 
 EPOXY = Matrix(3500.0, 0.35, 1.2, 55e-6, 0.2)

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from fabric_cad.cli import main
-from fabric_cad.composite.constituents import Constituents, GivenYarn, Matrix
 from fabric_cad.composite.homogenisation.homogenise import constants, homogenise, homogenise_plate
 from fabric_cad.composite.materials import element_materials
 from fabric_cad.composite.matrix import mesh_composite
 from fabric_cad.composite.options import USUAL, CompositeOptions
 from fabric_cad.composite.spacing import composite_mesh_options
 from fabric_cad.composite.stiffness.computation import COARSE, periodic_mesh
+from fabric_cad.composite.substances import Constituents, GivenYarn, Matrix
 from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.measured.tables import read_families, read_family
 from fabric_cad.model.identification import identify

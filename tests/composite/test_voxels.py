@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fabric_cad.composite.constituents import Constituents, Fibre, GivenYarn, Matrix
 from fabric_cad.composite.fibres import fibre_fractions, fibre_sections
+from fabric_cad.composite.substances import Constituents, Fibre, GivenYarn, Matrix
 from fabric_cad.composite.voxels import vertical_extent, voxelise
 from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.measured.tables import read_families

@@ -46,8 +46,8 @@ def run(options: StiffnessOptions, voice: Voice) -> int:
 def make(name: str, options: StiffnessOptions, voice: Voice) -> None:
     """Homogenise the composite of one row into OUT/<row>."""
     from ...cell.pipeline import Stages
-    from ...composite.stiffness.report import summary
     from ...composite.stiffness.run import make_deck, make_stiffness
+    from ...composite.stiffness.summary import summary
 
     row = find_row(name, options, voice)
     how: dict[str, Any] = {"mesh": options.mesh, "options": options.box, "stages": Stages(voice.stage)}

@@ -20,7 +20,6 @@ from ...model.solved import SolvedFabric, SolvedTable
 from ...support.errors import InputError, Problem
 from ...support.memory import available_memory
 from ..cell import CompositeCell
-from ..constituents import Constituents
 from ..fibres import fibre_sections
 from ..homogenisation.homogenise import Effective, Materials, Plate, homogenise, homogenise_plate
 from ..homogenisation.periodicity import PeriodicMesh
@@ -28,6 +27,7 @@ from ..materials import element_fractions, element_materials
 from ..matrix import mesh_composite
 from ..options import CompositeOptions
 from ..spacing import composite_mesh_options
+from ..substances import Constituents
 
 COARSE = {"across": 8, "crossing": 8}
 """The mesh where nothing is said of it: moduli change by 1 % on finer ones, which follow the yarns' faces closer."""

@@ -33,10 +33,10 @@ from ...decks.keywords import (
 )
 from ...meshing.mesh import Mesh
 from ..cell import CompositeCell
-from ..constituents import Constituents
 from ..homogenisation.homogenise import tensor_of
 from ..homogenisation.periodicity import PeriodicMesh, periodic_pairs
 from ..micromechanics import yarn_properties
+from ..substances import Constituents
 from ..transverse import TransverselyIsotropic
 from .report import COMPONENTS
 

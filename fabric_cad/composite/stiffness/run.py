@@ -11,10 +11,12 @@ from ...cell.traces import renew_digests, write_traced
 from ...measured.tables import Family, expect_row
 from ...support.interrupts import uninterrupted
 from ...support.staging import staged
-from ..constituents import Constituents, read_constituents
+from ..constituents import read_constituents
 from ..options import USUAL, CompositeOptions
+from ..substances import Constituents
 from .computation import CompositeStiffness, composite_model, compute_stiffness, periodic_mesh
-from .report import StiffnessReport, stiffness_report, write_table
+from .report import StiffnessReport, stiffness_report
+from .summary import write_table
 
 NAME = "stiffness"
 """The stem of every file."""
