@@ -30,7 +30,7 @@ from .nodes import Nodes
 from .sheets import Sheets
 from .yarns import Strip, of_direction
 
-_BULGE = 3.5
+_BULGE = 4.5
 """Beside arcs the sheets' heights go as this power of the way to the apex.
 
 An arc leaves the yarn's bottom with its slope. So do the sheets, hugging the fabric's faces before they come together,
@@ -145,7 +145,9 @@ def lay_resin(
     for sheet, other in ((lower, upper), (upper, lower)):
         alone = np.flatnonzero((sheet[:, -1] < 0) & (other[:, -1] >= 0))
         sheet[alone, -1] = other[alone, -1]
-        sheet[alone, 1:-1] = nodes.add(_lines_to_apex(nodes.points, sheet[alone], share)[:, 1:-1])
+        places = nodes.points[other[alone]]  # the strip's height over them falls to the apex: the two never cross
+        height = nodes.points[sheet[alone, :1]] - places[:, :1]
+        sheet[alone, 1:-1] = nodes.add((places + (1 - share) * height)[:, 1:-1])
     for number in range(along.yarns):
         _between((lower, upper), nodes, share, along, number)
     return Resin(strip.direction, right, lower, upper, strip.side(right)[:-1], lines, is_lowest, is_highest)
