@@ -23,6 +23,7 @@ _FRACTION: Check = (
     lambda v: 0 < v <= CLOSEST_PACKING,
     f"is not above 0 and up to {CLOSEST_PACKING:.4f}, where round fibres touch each other",
 )
+_WEIGHT: Check = (float, lambda v: 0 < v <= 1, "is not above 0 and up to 1")
 _COMMON: dict[str, Check] = {"density_g_cm3": POSITIVE, "name": TEXT, "source": TEXT}
 _ALONG_ACROSS: dict[str, Check] = {
     "expansion_1_per_K": FINITE,
@@ -40,7 +41,14 @@ _CHECKS: dict[str, dict[str, Check]] = {
         "conductivity_W_per_mK": POSITIVE,
         **_COMMON,
     },
-    "yarn": {"fibre_fraction": _FRACTION, **_MODULI, "nu23": POISSON, **_COMMON, **_ALONG_ACROSS},
+    "yarn": {
+        "fibre_fraction": _FRACTION,
+        "fibre_weight_fraction": _WEIGHT,
+        **_MODULI,
+        "nu23": POISSON,
+        **_COMMON,
+        **_ALONG_ACROSS,
+    },
 }
 _NEEDED = {"fibre": ("E1_MPa", "E2_MPa", "G12_MPa", "G23_MPa", "nu12"), "matrix": ("E_MPa", "nu")}
 

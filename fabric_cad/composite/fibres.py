@@ -1,6 +1,7 @@
 """How much of a yarn is fibre, along it: from its linear density and the area of its section, or as given.
 
-A yarn holds the fibre section A_f = tex / (1000 density) mm2 (density in g/cm3) all along. A plane across
+A yarn holds the fibre section A_f = tex / (1000 density) mm2 (density in g/cm3) all along, or that times the share
+of its weight that is fibre. A plane across
 the fabric cuts it in the area A, at the slope theta of its trajectory; normal to the fibres that is A cos(theta),
 of which the fibres take V = A_f / (A cos(theta)).
 """
@@ -55,7 +56,8 @@ def fibre_sections(row: Family, constituents: Constituents) -> FibreSections:
         message = "is missing: the fibre fraction is to follow from the linear density of the yarns"
         raise InputError(Problem(message, constituents.path, None, "density_g_cm3", name))
 
-    areas = {direction: value / (1000 * density) for direction, value in known.items()} if density else {}
+    share = constituents.yarn.fibre_weight_fraction
+    areas = {direction: share * value / (1000 * density) for direction, value in known.items()} if density else {}
     if len(areas) < 2 and given is None and constituents.yarn.law is None:
         message = "is missing, and the row gives no linear density of both directions from which it would follow"
         raise InputError(Problem(message, constituents.path, None, "fibre_fraction", name))

@@ -58,7 +58,8 @@ class Matrix:
 class GivenYarn:
     """What is said of the yarn itself: its fibre fraction, and its constants where no micromechanics shall give them.
 
-    Units as of :class:`Fibre`; ``own_fraction`` is True where the fraction is given for one row alone.
+    Units as of :class:`Fibre`; ``own_fraction`` is True where the fraction is given for one row alone;
+    ``fibre_weight_fraction`` is the share of a linear density that is fibre, less than 1 in commingled yarns.
     """
 
     fibre_fraction: float | None = None
@@ -75,6 +76,7 @@ class GivenYarn:
     name: str = ""
     source: str = ""
     own_fraction: bool = False
+    fibre_weight_fraction: float = 1.0
 
     @property
     def law(self) -> TransverselyIsotropic | None:

@@ -70,6 +70,10 @@ def test_a_yarns_own_constants_need_no_fibre(tmp_path):
             FIBRE + MATRIX + "[yarn]\nfibre_fraction = 0.92\n",
             r":11: fibre_fraction: 0.92 is not above 0 and up to 0.9069",
         ),
+        (
+            FIBRE + MATRIX + "[yarn]\nfibre_weight_fraction = 60\n",
+            r":11: fibre_weight_fraction: 60 is not above 0 and up to 1",
+        ),
         (MATRIX + YARN.replace("nu23 = 0.29\n", ""), r"nu23: is missing: the yarn's own constants are"),
         (
             FIBRE.replace("G23_MPa = 30e3", "G23_MPa = 18e3") + MATRIX,

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fabric_cad.composite.constituents import read_constituents
 from fabric_cad.composite.fibres import fibre_fractions, fibre_sections
 from fabric_cad.composite.substances import CLOSEST_PACKING, Constituents, Fibre, GivenYarn, Matrix
 from fabric_cad.measured.shipped import shipped_families
@@ -80,6 +81,23 @@ def test_fibre_is_neither_lost_nor_found_along_a_yarn(tmp_path):
         fibre = (fraction * section_areas(swept, places)) @ weights
         assert fibre == pytest.approx(800 / (1000 * 2.5) * swept.planes[-1].place * 1.004, rel=1e-8)
         assert fraction.min() < fraction.max()
+
+
+def test_of_a_commingled_yarn_a_share_is_fibre(tmp_path):
+    row = table(tmp_path, "weft_linear_density_tex", "800")
+    sections = fibre_sections(row, Constituents(MATRIX, GLASS, GivenYarn(fibre_weight_fraction=0.6)))
+    assert sections.areas["weft"] == pytest.approx(0.6 * 0.32)
+
+
+@pytest.mark.parametrize("family", ["plain", "twill", "satin", "pattern"])
+def test_every_shipped_row_has_constituents_and_room_for_its_fibres(family):
+    rows = read_families(shipped_families())[family]
+    solved = identify(rows)
+    for name in rows.names:
+        sections = fibre_sections(rows[name], read_constituents(shipped_families(), name))
+        for swept in swept_yarns(solved[name])[:: solved[name].weave.wefts]:  # the first of either direction
+            fraction = fibre_fractions(swept, sections, np.array([0.1]))
+            assert 0.1 < fraction[0] < 0.9
 
 
 def test_the_rows_own_fibre_density_goes_before_the_constituents(tmp_path):
