@@ -105,6 +105,7 @@ coverage: $(READY) ## run the tests and tell which lines they reach: terminal, b
 .PHONY: docs
 docs: $(READY) ## build the documentation into build/docs; a warning is an error
 	@$(BIN)/python -m sphinx -q -W --keep-going -b html -d build/.doctrees docs build/docs
+	@$(BIN)/fabric-cad page --gallery -q --out build/docs
 	@$(BIN)/python tests/links.py build/docs
 	@echo build/docs/index.html
 

@@ -14,6 +14,7 @@ CadQuery and gmsh are loaded when a cell is first built or meshed, not by import
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 
 __version__ = "0.1.0"
@@ -54,6 +55,7 @@ _FROM = {
     "Solver": "simulation.job",
     "read_study": "study",
     "run_study": "study",
+    "show": "page.display",
     "FabricCadError": "support.errors",
     "InputError": "support.errors",
     "ArgumentError": "support.errors",
@@ -74,3 +76,19 @@ def __getattr__(name: str):
 
 def __dir__() -> list[str]:
     return sorted(__all__)
+
+
+def _register_display() -> None:
+    """Where this is imported in a notebook, a solved fabric is shown as a picture and a table."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    if shell is None:
+        return
+
+    def drawn(fabric):
+        return import_module(".page.display", __name__).picture_and_table(fabric)
+
+    formatter = shell.display_formatter.formatters["text/html"]
+    formatter.for_type_by_name(f"{__name__}.model.solved", "SolvedFabric", drawn)
+
+
+_register_display()

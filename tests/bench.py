@@ -12,6 +12,7 @@ import argparse
 import csv
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -189,6 +190,21 @@ class Bench:
         memory = max(figure.megabytes, report["solver"]["peak_memory_MB"])
         return Figure(**(asdict(figure) | {"size": size, "megabytes": memory, "stages": report["seconds"]}))
 
+    def page(self) -> list[Figure]:
+        """The page that draws a fabric in a browser: until it can be used, and from a slider's event to the drawing."""
+        if not (shutil.which("chromium") or shutil.which("chromium-browser")):
+            return []
+        command = [PYTHON, str(ROOT / "tests" / "page_latency.py"), "8", "16"]
+        found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+        software = "SwiftShader" in found["renderer"]
+        size = "SwiftShader (software)" if software else found["renderer"][:34]
+        figures = [Figure("page, start to usable", found["usable"], promised="3 s")]
+        for crossings, promised in (("8", "0.1 s"), ("16", "0.15 s")):
+            what = f"page, {crossings} x {crossings}, event to draw call"
+            seconds = {name: value / 1000 for name, value in found[crossings].items()}
+            figures.append(Figure(what, seconds["drawn"], size=size, promised=promised, stages=seconds))
+        return figures
+
     def study(self, name: str, base: str, depth: str, units: int, width: str, crimp: str) -> Path:
         file = self.folder / f"{name}.toml"
         file.write_text(
@@ -244,6 +260,7 @@ FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
     lambda b: b.tension("plain_flat", "5 x 5 surface", "ratios = [1]\npoints = 4\ngrid = 5\n", "120 s, 2000 MB"),
     lambda b: b.tension("twill22", "k = 1 to 0.4 %", _EQUAL, "60 s"),
     lambda b: b.cells(200, "0.7 s"),
+    lambda b: b.page(),
 )
 """What is measured, in this order: add a line for a figure more."""
 

@@ -43,7 +43,10 @@ def guard(port: int) -> Callable:
     async def guarded(request: Request, handler: Callable[[Request], Awaitable[StreamResponse]]) -> StreamResponse:
         if fault := _fault(request.headers, request.method, request.path, host):
             return web.Response(status=403, text=fault, headers=_HEADERS)
-        response = await handler(request)
+        try:
+            response = await handler(request)
+        except ConnectionError:  # a tab that was closed while it was answered
+            return web.Response(status=400)
         if not response.prepared:
             response.headers.update(_HEADERS)
         return response

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import logging
 import os
 import socket
 import tempfile
@@ -57,7 +58,7 @@ def serve(
     row: EditedRow,
     places: Places,
     port: int = 0,
-    told: Callable[[Address], None] = lambda address: None,
+    told: Callable[[Address], None] = lambda _: None,
 ) -> None:
     """Serve the page of a row until it is stopped; ``told`` is called with its address once it answers.
 
@@ -66,6 +67,8 @@ def serve(
     desk = Desk(row, places)
     address = Address(_free_port(port), new_token())
     os.environ["WSLINK_READY_MSG"] = ""  # which would be printed among what the command prints
+    os.environ["WSLINK_WS_COMPRESS"] = "0"  # on the loopback, packing takes longer than sending
+    logging.getLogger("wslink").setLevel(logging.CRITICAL)  # a tab that is closed while it is answered is no error
 
     from trame.app import get_server
     from trame.ui.html import DivLayout

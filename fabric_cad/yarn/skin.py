@@ -71,11 +71,12 @@ def skin(path: Trajectory, sections: Sequence[Section]) -> Skin:
     patches = []
     for segment, (piece, first, second) in enumerate(zip(path.pieces, sections, sections[1:])):
         along = piece if first is second else as_cubic(piece)
+        abscissae = along.abscissae
         for side, strip in first.strips.items():
             other = second.strips[side].poles
             rows = [strip.poles] * len(along.poles) if first is second else [strip.poles] * 2 + [other] * 2
             poles = np.empty((len(along.poles), len(other), 4))
-            poles[..., 0] = along.abscissae[:, None]
+            poles[..., 0] = abscissae[:, None]
             poles[..., 1:] = rows
             poles[..., 2] += along.poles[:, None]
             degree = 1 if len(other) == 2 else 2

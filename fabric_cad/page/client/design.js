@@ -191,7 +191,14 @@ const fabric_cad_design = (() => {
       window.fabric_design = this;
     },
     methods: {
-      call(question, ...rest) { return this.trame.trigger("ask", [this.tab, question, ...rest]); },
+      async call(question, ...rest) {
+        this.open = (this.open || 0) + 1;
+        try {
+          return await this.trame.trigger("ask", [this.tab, question, ...rest]);
+        } finally {
+          this.open -= 1;
+        }
+      },
 
       async ask(question, ...rest) {  // the newest question waits while one is answered
         if (this.busy) { this.waiting = [question, ...rest]; return; }
@@ -207,6 +214,7 @@ const fabric_cad_design = (() => {
       },
 
       async take(answer) {
+        this.answered = performance.now();
         this.problem = answer.problem || "";
         this.exists = !!answer.exists;
         this.notice = answer.done || "";
@@ -219,7 +227,7 @@ const fabric_cad_design = (() => {
           this.row = answer.row;
           history.replaceState(null, "", location.pathname + QUERY + "#" + answer.row.link);
           if (!this.view) { this.share = 0.5 / this.wefts; await this.begin(); }
-          if (answer.scene) { this.apply(); this.after(); }
+          if (answer.scene) this.after();
         }
       },
 

@@ -95,6 +95,7 @@ const fabricView = (() => {
         };
       });
       stand();
+      draw();  // at once: before the page around it is laid out again
     };
 
     view.set = changes => { Object.assign(options, changes); stand(); };
@@ -124,6 +125,7 @@ const fabricView = (() => {
     }
 
     function draw() {
+      if (waiting) cancelAnimationFrame(waiting);
       waiting = 0;
       if (!scene) return;
       const width = Math.max(1, Math.round(canvas.clientWidth * devicePixelRatio));
@@ -166,7 +168,10 @@ const fabricView = (() => {
       }
       view.draws += 1;
       view.drawn = performance.now();
-      if (view.painted) { gl.finish(); view.painted(performance.now()); }
+      if (view.painted) {  // reading a pixel back waits for all of them
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        view.painted(performance.now());
+      }
     }
 
     function attribute(place, data, size, kind, stride, offset, divisor = 0) {
