@@ -24,6 +24,7 @@ LAYERS = (
     "pictures",
     "cell",
     "composite",
+    "flow",
     "simulation",
     "study",
     "page",

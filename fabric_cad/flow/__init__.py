@@ -1,0 +1,1 @@
+"""Flow between the yarns of a cell: the permeability tensor."""

@@ -1,0 +1,60 @@
+"""From a solved fabric to the permeability of its cell, with an error bar from a second mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..composite.cell import CompositeCell
+from ..composite.matrix import mesh_composite
+from ..model.solved import SolvedFabric
+from ..support.errors import InputError, Problem
+from ..support.memory import available_memory
+from .connections import open_directions
+from .equations import Equations, assemble
+from .fineness import Fineness
+from .quadratic import QuadraticMesh
+from .space import Top, held, space_between
+from .stokes import Flow, stokes_flow
+
+_BYTES = 45000  # a hexahedron needs, measured
+
+
+@dataclass(frozen=True, eq=False)
+class CellFlow:
+    """Flow in one cell: the space it fills, the equations and their solution."""
+
+    fabric: SolvedFabric
+    fineness: Fineness
+    cell: CompositeCell
+    top: Top
+    mesh: QuadraticMesh
+    equations: Equations
+    flow: Flow
+
+    @property
+    def porosity(self) -> float:
+        """Share of the cell in which fluid flows."""
+        return float(self.equations.masses.sum() / self.mesh.mesh.volume)
+
+
+def cell_flow(fabric: SolvedFabric, fineness: Fineness, top: Top) -> CellFlow:
+    """The flow between the rigid yarns of a fabric's cell.
+
+    Raises :class:`InputError` where the mesh cannot be so or would not fit in memory, :class:`SolverError` where the
+    flow is not solved.
+    """
+    cell = mesh_composite(fabric, fineness.yarns, fineness.box)
+    _refuse_too_large(int(np.count_nonzero(cell.in_matrix)))
+    mesh = space_between(cell, fabric, top)
+    equations = assemble(mesh, held(mesh, top))
+    flow = stokes_flow(equations, open_directions(mesh), mesh.mesh.volume)
+    return CellFlow(fabric, fineness, cell, top, mesh, equations, flow)
+
+
+def _refuse_too_large(hexahedra: int) -> None:
+    needed, available = _BYTES * hexahedra, available_memory()
+    if available is not None and needed > available:
+        message = f"{hexahedra} hexahedra need some {needed / 1e9:.1f} GB, {available / 1e9:.1f} GB are there"
+        raise InputError(Problem(message, column="across"))
