@@ -26,6 +26,8 @@ def site(tmp_path_factory):
     command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-d", str(trees), str(DOCS)]
     done = subprocess.run([*command, str(html)], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
+    gallery = ["page", "--gallery", "--quiet", "--out", str(html), "--families", str(ROOT / "families")]
+    subprocess.run([sys.executable, "-m", "fabric_cad", *gallery], cwd=ROOT, check=True, capture_output=True)
     return html
 
 
