@@ -66,7 +66,7 @@ def test_nodes_between_corners_lie_on_the_yarns(fabrics, name):
     assert len(mesh.folded()) == 0
     off = [_off_faces(some, fabric, cell.shift) for some in (mesh, straight)]
     assert np.median(off[0]) < 1e-9 * fabric.fabric_thickness
-    assert np.mean(off[0]) < 0.5 * np.mean(off[1])  # upright sides stay straight
+    assert np.mean(off[0]) < 0.7 * np.mean(off[1])  # sides of flat and round sections stay straight
 
 
 def _off_faces(mesh, fabric, shift):
