@@ -113,6 +113,11 @@ class Bench:
         seconds, memory = measure(command, runs or self.runs)
         return Figure(what, seconds, memory, runs or self.runs, floor=floor, promised=promised)
 
+    @property
+    def folders(self) -> list[str]:
+        """The shipped tables, and the folder of results."""
+        return ["--families", str(ROOT / "families"), "--out", str(self.folder / "build")]
+
     def solve(self, what: str, families: str, promised: str) -> Figure:
         folders = ["--out", str(self.folder / "build"), "--families", str(self.folder / families)]
         return self.command(what, [*FABRIC_CAD, "solve", "-q", *folders], promised)
@@ -125,6 +130,14 @@ class Bench:
         report = json.loads((self.folder / "build" / row / "report.json").read_text())
         megabytes = (self.folder / "build" / row / f"{row}.step").stat().st_size / 1e6
         size = f"{report['mesh']['hexahedra']} hexahedra, STEP {megabytes:.2f} MB"
+        return Figure(**(asdict(figure) | {"size": size, "stages": report["seconds"]}))
+
+    def stiffness(self, row: str, promised: str, *options: str, runs: int = 0) -> Figure:
+        """A composite homogenised, with the times of its stages."""
+        what = f"stiffness {' '.join([row, *options])}"
+        figure = self.command(what, [*FABRIC_CAD, "stiffness", row, *self.folders, *options], promised, runs=runs)
+        report = json.loads((self.folder / "build" / row / "stiffness.json").read_text())
+        size = f"{report['mesh']['hexahedra']} hexahedra, {report['solver']['iterations']} iterations"
         return Figure(**(asdict(figure) | {"size": size, "stages": report["seconds"]}))
 
     def floors(self, row: str) -> list[Figure]:
@@ -240,6 +253,8 @@ class Bench:
 
 _NO_STAGE = ("unit", "total", "processor", "process_megabytes", "load CadQuery")
 _EQUAL = "ratios = [1]\npoints = 1\ngrid = 0\n"
+_FINE = ("--across", "32", "--crossing", "32", "--gap", "16", "--through", "8", "--layers", "12")
+_VOXELS = ("--cells", "200x200x60")
 _MILLION = ("--across", "36", "--through", "8", "--gap", "44")
 
 FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
@@ -261,6 +276,12 @@ FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
     lambda b: b.tension("twill22", "k = 1 to 0.4 %", _EQUAL, "60 s"),
     lambda b: b.cells(200, "0.7 s"),
     lambda b: b.page(),
+    lambda b: b.stiffness("plain", "8 s"),
+    lambda b: b.stiffness("twill32", "30 s"),
+    lambda b: b.stiffness("plain", "300 s, 4000 MB", *_FINE, runs=1),
+    lambda b: b.command(
+        "voxels twill32, 200 x 200 x 60", [*FABRIC_CAD, "voxels", "twill32", *_VOXELS, *b.folders], "1 s more"
+    ),
 )
 """What is measured, in this order: add a line for a figure more."""
 

@@ -1,4 +1,4 @@
-"""Where the family tables and ``simulation.toml`` that come with the package are."""
+"""Where the family tables that come with the package are, and the TOML files beside them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def shipped_families() -> Path:
-    """Folder of the family tables that come with the package, ``simulation.toml`` beside them."""
+    """Folder of the family tables that come with the package, the shipped TOML files beside them."""
     inside = Path(__file__).parents[1] / "families"  # an installed package
     beside = Path(__file__).parents[2] / "families"  # a checkout
 

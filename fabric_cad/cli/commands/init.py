@@ -47,7 +47,7 @@ def _other_form(table: Path) -> Path:
 
 COMMAND = Command(
     name="init",
-    text="put the shipped family tables, simulation.toml and an example of a study into ./families "
+    text="put the shipped family tables, simulation.toml, composite.toml and an example of a study into ./families "
     "(files that exist are kept)",
     options=Options,
     run=run,
