@@ -29,7 +29,8 @@ from .faces import box_faces, yarn_faces
 from .grid import Lines, lines_across
 from .nodes import Nodes
 from .options import USUAL, CompositeOptions
-from .resin import lay_all_resin, reach_of, resin_hexahedra, resin_nodes
+from .resin import lay_all_resin, reach_of
+from .resin_mesh import resin_hexahedra, resin_nodes
 from .sheets import Sheets, fill_pockets, lay_yarns, layers_of
 from .spacing import gap_shares
 from .yarns import Strip, of_direction, strips_of

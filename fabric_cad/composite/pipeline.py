@@ -22,7 +22,7 @@ from .constituents import read_constituents
 from .fibres import fibre_sections
 from .matrix import mesh_composite
 from .options import USUAL, CompositeOptions
-from .report import Figures, composite_report, figures_of, solids_report
+from .report import Figures, composite_report, doubts, figures_of, solids_report
 from .spacing import composite_mesh_options
 
 NAME = "composite"
@@ -74,7 +74,7 @@ def make_composite(
         report = composite_report(fabric, options, cell, written, figures) | solids_report(volumes, cell)
         report["seconds"] = {stage: round(seconds, 4) for stage, seconds in stages.seconds.items()}
         report |= trace(row, fineness)
-        report["warnings"] = [*map(str, implausible(row, table.columns)), *warnings]
+        report["warnings"] = [*map(str, implausible(row, table.columns)), *warnings, *doubts(report)]
         write_traced(report, folder / f"{NAME}.json")
     return report
 

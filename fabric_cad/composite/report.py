@@ -10,6 +10,7 @@ import numpy as np
 from ..meshing.hexahedron import hexahedra_volumes
 from ..meshing.mesh import Mesh
 from ..meshing.quality import hexahedra_quality
+from ..model.plausibility import LEAST_JACOBIAN, LOW_JACOBIAN
 from ..model.solved import SolvedFabric
 from ..support.errors import BuildError
 from .cell import MATRIX, CompositeCell
@@ -43,16 +44,12 @@ def composite_report(
 ) -> dict:
     """The content of ``composite.json``, lengths mm; ``written`` is the mesh as read from its file.
 
-    Raises :class:`BuildError` where the mesh does not fill the box.
+    Raises :class:`BuildError` where the mesh does not fill the box, or no solver would take it.
     """
     box = float(cell.size.prod())
     volumes, in_matrix = figures.volumes, written.body == written.bodies.index(MATRIX)
     error = float(volumes.sum() / box - 1)
-    if abs(error) > _VOLUME or not volumes.min() > 0:
-        raise BuildError(
-            f"{fabric.name}: the hexahedra do not fill the box: their volumes are {error:.3g} of it off, "
-            f"the least is {volumes.min():.3g} mm3"
-        )
+    _check(fabric.name, error, figures)
 
     fibre = float((figures.fibre_fraction * volumes).sum() / box)
     jacobian = figures.scaled_jacobian
@@ -83,6 +80,32 @@ def composite_report(
         "yarn_volume_fraction": float(volumes[~in_matrix].sum() / box),
         "fibre_volume_fraction": None if np.isnan(fibre) else fibre,
     }
+
+
+def _check(row: str, error: float, figures: Figures) -> None:
+    """Raise where volumes are more than rounding off the box, or elements are as good as folded."""
+    least, bad = figures.scaled_jacobian.min(), np.count_nonzero(figures.scaled_jacobian <= LEAST_JACOBIAN)
+    if abs(error) > _VOLUME or not figures.volumes.min() > 0:
+        raise BuildError(
+            f"{row}: the hexahedra do not fill the box: their volumes are {error:.3g} of it off, "
+            f"the least is {figures.volumes.min():.3g} mm3"
+        )
+    if bad:
+        raise BuildError(
+            f"{row}: {bad} hexahedra of the composite cell have a scaled Jacobian not above {LEAST_JACOBIAN:g}, "
+            f"{least:.3g} at least, which no solver takes: the gaps are too narrow, or the yarns too steep, for "
+            "strips of resin beside flat and round sections"
+        )
+
+
+def doubts(report: Mapping) -> list[str]:
+    """Sentences on elements of low quality that a ``composite.json`` tells of."""
+    return [
+        f"the smallest scaled Jacobian of the {part} is {least:.2g}, below {LOW_JACOBIAN:g}: a solver may lose "
+        f"accuracy there (row {report['row']})"
+        for part, least in report["min_scaled_jacobian"].items()
+        if least < LOW_JACOBIAN
+    ]
 
 
 def solids_report(volumes: Mapping[str, float], cell: CompositeCell) -> dict:

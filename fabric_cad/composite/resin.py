@@ -18,15 +18,13 @@ one's bottom. In the corner of n x n lines beside both yarns the two strips shar
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
-from ..meshing.templates import Template, coons, numbered, straight
 from ..weave.directions import Direction
 from .grid import Lines
 from .nodes import Nodes
+from .resin_mesh import Resin
 from .sheets import Sheets
 from .yarns import Strip, of_direction
 
@@ -39,52 +37,6 @@ or they would lie along the arc: on the row twill22_round straight ones make cor
 
 Corners = Mapping[tuple[int, int, bool, bool], np.ndarray]
 """(weft, warp, right of the warp, right of the weft) to the nodes (n + 1 lines of x, n + 1 lines of y) of a sheet."""
-
-
-@dataclass(frozen=True, eq=False)
-class Resin:
-    """The strip of resin at one side of a yarn, on the torus.
-
-    ``lower`` and ``upper`` (stations, reach + 1) are its sheets' nodes, from the yarn to the apex;
-    ``side`` (stations, 2k + 1) those of the yarn's side, upwards; ``across`` the lines it covers.
-    ``is_lowest`` and ``is_highest`` (stations,) tell where no yarn lies below and above it.
-    """
-
-    direction: Direction
-    right: bool
-    lower: np.ndarray
-    upper: np.ndarray
-    side: np.ndarray
-    across: np.ndarray
-    is_lowest: np.ndarray
-    is_highest: np.ndarray
-
-    @property
-    def template(self) -> Template:
-        """The section's quadrilaterals."""
-        return triangle(self.lower.shape[1] - 1, (self.side.shape[1] - 1) // 2)
-
-
-@lru_cache(maxsize=64)
-def triangle(reach: int, half: int) -> Template:
-    """Quadrilaterals of a strip's section with ``reach`` columns and a base of 2 ``half`` edges.
-
-    Outline counter-clockwise from the base's lower end: lower sheet, apex, upper sheet, base. Three patches
-    meet in a point between the base's middle and the line where the last ``half`` columns begin.
-    """
-    outline = 2 * reach + 2 * half
-    node = np.eye(outline)
-    lower, upper = node[: reach + 1], node[reach : 2 * reach + 1][::-1]
-    base = np.vstack([node[2 * reach :], node[:1]])[::-1]
-
-    split = reach - half
-    centre = 0.3 * base[half] + 0.35 * (lower[split] + upper[split])
-    to_base = straight(base[half], centre, split)
-    to_lower, to_upper = straight(lower[split], centre, half), straight(centre, upper[split], half)
-    beneath = coons(lower[: split + 1], to_base, base[: half + 1], to_lower)
-    above = coons(to_base, upper[: split + 1], base[half:], to_upper)
-    point = coons(lower[split:], to_upper, to_lower, upper[split:][::-1])
-    return numbered(outline, [beneath, above, point])
 
 
 def corner_sheets(strips: Sequence[Strip], nodes: Nodes, x: Lines, y: Lines, reach: int) -> Corners:
@@ -130,12 +82,10 @@ def lay_resin(
         is_last[along.own(number)] = False
         taken[along.own(number)] = (other.top if high else other.bottom)[lines].T
         for end in (False, True):
-            key = (
-                (strip.index, number, end, right)
-                if strip.direction is Direction.WEFT
-                else (number, strip.index, right, end)
-            )
-            corner = corners[key] if strip.direction is Direction.WEFT else corners[key].T
+            if strip.direction is Direction.WEFT:
+                corner = corners[strip.index, number, end, right]
+            else:
+                corner = corners[number, strip.index, right, end].T
             beside = along.outwards(number, end, reach)[1:]
             taken[beside], is_last[beside] = corner[1:], False
 
@@ -198,20 +148,6 @@ def lay_resins(sheets: Sheets, resins: Sequence[Resin]) -> None:
         below, above = there.low[:, outside], there.high[:, outside]
         there.low[:, outside] = np.where(resin.is_lowest[:, None], resin.lower[:, 1:], below)
         there.high[:, outside] = np.where(resin.is_highest[:, None], resin.upper[:, 1:], above)
-
-
-def resin_nodes(resin: Resin, nodes: Nodes) -> np.ndarray:
-    """Node numbers (stations, nodes) of a strip's section, in the order of its :func:`triangle`."""
-    outline = np.hstack([resin.lower, resin.upper[:, -2::-1], resin.side[:, -2:0:-1]])
-    inner = np.einsum("io,roc->ric", resin.template.weights, nodes.points[outline])
-    return np.hstack([outline, nodes.add(inner)])
-
-
-def resin_hexahedra(resin: Resin, numbers: np.ndarray) -> np.ndarray:
-    """Hexahedra (elements, 8) of a strip from its nodes (stations + 1, nodes), in the order of its :func:`triangle`."""
-    ahead = (resin.direction is Direction.WEFT) == resin.right
-    quads = resin.template.quads if ahead else resin.template.quads[:, ::-1]
-    return np.concatenate([numbers[:-1][:, quads], numbers[1:][:, quads]], axis=2).reshape(-1, 8)
 
 
 def reach_of(strips: Sequence[Strip], lines: Lines) -> int:

@@ -168,3 +168,23 @@ def test_bad_input(tmp_path, capsys, arguments, status, words):
         got = error.code
     assert got == status and words in capsys.readouterr().err
     assert not (tmp_path / "plain").exists()
+
+
+def test_a_mesh_that_no_solver_takes_is_not_delivered(mesh):
+    from fabric_cad.composite.cell import CompositeCell
+    from fabric_cad.composite.options import USUAL
+    from fabric_cad.composite.report import Figures, composite_report
+    from fabric_cad.measured.tables import read_families
+    from fabric_cad.model.identification import identify
+    from fabric_cad.support.errors import BuildError
+
+    fabric = identify(read_families(shipped_families())["plain"])["plain"]
+    volumes = hexahedra_volumes(mesh.points[mesh.hexahedra])
+    cell = CompositeCell(mesh, {}, np.array([volumes.sum(), 1.0, 1.0]), 0.05, 0.0, 0.0)
+    good, none = np.full(len(volumes), 0.9), np.zeros(len(volumes))
+    assert composite_report(fabric, USUAL, cell, mesh, Figures(volumes, good, none))["row"] == "plain"
+    folded = np.where(np.arange(len(good)) == 3, -0.1, good)
+    with pytest.raises(BuildError, match="plain: 1 hexahedra .* not above 0.0001, -0.1 at least"):
+        composite_report(fabric, USUAL, cell, mesh, Figures(volumes, folded, none))
+    with pytest.raises(BuildError, match="do not fill the box"):
+        composite_report(fabric, USUAL, cell, mesh, Figures(volumes * 1.001, good, none))
