@@ -10,7 +10,8 @@ from ..model.scatter import propagate
 from ..study.table_figures import identified_figures
 from ..support.errors import InputError
 from ..weave.directions import DIRECTIONS
-from ..yarn.edges import allowed_scaled_jacobian
+from ..yarn.edges import allowed_over
+from ..yarn.tessellation import swept_tiles
 from .edited import Solution
 
 
@@ -66,7 +67,7 @@ def figures(solution: Solution) -> tuple[Figure, ...]:
 
 def expected_quality(solution: Solution) -> Figure:
     """The least scaled Jacobian that the yarns' edges allow any mesh of hexahedra."""
-    value = allowed_scaled_jacobian(solution.fabric)
+    value = allowed_over(swept_tiles(solution.fabric))
     return Figure("mesh.scaled_jacobian_edges_allow", "elements at the edges, at best", value)
 
 

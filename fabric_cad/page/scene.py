@@ -13,12 +13,12 @@ import numpy as np
 
 from ..model.solved import SolvedFabric
 from ..weave.colours import COLOURS
-from ..weave.directions import Direction
+from ..weave.directions import DIRECTIONS, Direction
 from ..yarn.tessellation import BITS, TiledYarns, Tiling, tessellate, tile_codes
 from ..yarn.tiles import COARSE, Grid
 
-MANY = 128
-"""Crossings of a cell from which on its tiles are coarse."""
+MANY, MANY_TILES = 128, 40
+"""Crossings of a cell, and different tiles in it, from which on the tiles are coarse."""
 
 _POINT, _NORMAL = 32767, 127
 _LEVEL = 1e-9  # mm, by which points of a contact's rim may miss it
@@ -32,7 +32,8 @@ def scene(fabric: SolvedFabric) -> dict[str, Any]:
     the crossed yarn touches there. Shape ``tile[k]`` stands at the k-th of ``places`` and is of ``yarn[k]``.
     """
     matrix = fabric.weave.interlacement()
-    grid = COARSE if matrix.size >= MANY else Grid()
+    tiles = sum(len(np.unique(tile_codes(matrix, direction))) for direction in DIRECTIONS)
+    grid = COARSE if matrix.size >= MANY or tiles >= MANY_TILES else Grid()
     groups = []
     for tiled in tessellate(fabric, grid):
         touching = _touching(fabric, tiled)

@@ -90,6 +90,7 @@ def serve(
             timeout=0,
             open_browser=False,
             show_connection_info=False,
+            disable_logging=True,
             exec_mode="main",
         )
     finally:

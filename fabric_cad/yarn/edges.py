@@ -8,12 +8,16 @@ bound it, not the mesher.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Protocol
+
 import numpy as np
 
 from ..model.solved import SolvedFabric
 from ..section.splines import Spline
 from ..section.strips import Section
 from .swept import swept_yarns
+from .trajectory import Trajectory
 
 _SAMPLES = 257
 
@@ -24,9 +28,26 @@ def allowed_scaled_jacobian(fabric: SolvedFabric) -> float:
     A round section has no edge; its outermost line takes its place, where the tangents are
     the line's, an upright and a horizontal.
     """
+    return allowed_over(swept_yarns(fabric))
+
+
+class Swept(Protocol):
+    """A yarn, or a part of one: its midline's pieces, and the sections at their ends."""
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """The midline between the control planes."""
+
+    @property
+    def sections(self) -> tuple[Section, ...]:
+        """The section in every control plane."""
+
+
+def allowed_over(parts: Iterable[Swept]) -> float:
+    """The same over some yarns, or over the tiles of all of them."""
     worst = 1.0
     known: set[bytes] = set()
-    for swept in swept_yarns(fabric):
+    for swept in parts:
         sections = swept.sections
         for piece, first, second in zip(swept.trajectory.pieces, sections, sections[1:]):
             shape = [piece.poles - piece.poles[0], piece.knots - piece.knots[0]]

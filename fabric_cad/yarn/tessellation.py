@@ -14,11 +14,13 @@ bits: a drawing needs no mesh of the cell, but tiles and places.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..model.solved import SolvedFabric
+from ..section.sections import Section
 from ..support.arrays import read_only
 from ..weave.directions import DIRECTIONS, Direction
 from ..weave.weaves import Yarn
@@ -26,7 +28,7 @@ from .planes import control_planes
 from .sections import control_sections
 from .skin import Patch, skin
 from .tiles import Grid, evaluated
-from .trajectory import trajectory
+from .trajectory import Trajectory, trajectory
 
 Shapes = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Points and normals, each (tiles, points, 3), and triangles (triangles, 3)."""
@@ -85,8 +87,21 @@ def tessellate(fabric: SolvedFabric, grid: Grid | None = None) -> tuple[TiledYar
     return tuple(_tiled(fabric, direction, grid) for direction in DIRECTIONS)
 
 
-def tile_patches(fabric: SolvedFabric, direction: Direction, code: int) -> tuple[Patch, ...]:
-    """The exact patches of one tile, t (mm) from the middle of the gap before its crossing."""
+@dataclass(frozen=True, eq=False)
+class SweptTile:
+    """A yarn over one crossing as it is swept; t (mm) counts from the middle of the gap before it."""
+
+    trajectory: Trajectory
+    sections: tuple[Section, ...]
+
+    @property
+    def patches(self) -> tuple[Patch, ...]:
+        """The exact patches of its surface."""
+        return skin(self.trajectory, self.sections).patches
+
+
+def swept_tile(fabric: SolvedFabric, direction: Direction, code: int) -> SweptTile:
+    """The tile of a code (:func:`tile_codes`)."""
     high, before, after, left, right = (bool(code >> place & 1) for place in range(len(BITS)))
     # a yarn of three crossings, of which the first is the tile's and the last the one before it
     yarn = Yarn(direction, 0, (high, high ^ after, high ^ before), (left,) * 3, (right,) * 3)
@@ -94,14 +109,21 @@ def tile_patches(fabric: SolvedFabric, direction: Direction, code: int) -> tuple
     planes = control_planes(fabric, yarn)
     gaps = [number for number, plane in enumerate(planes) if plane.crossing is None]
     own = planes[: gaps[1] + 1]
-    return skin(trajectory(fabric, yarn, own), control_sections(fabric, yarn, own)).patches
+    return SweptTile(trajectory(fabric, yarn, own), control_sections(fabric, yarn, own))
+
+
+def swept_tiles(fabric: SolvedFabric) -> Iterator[SweptTile]:
+    """Every tile that a fabric's cell is made of, once."""
+    for direction in DIRECTIONS:
+        for code in np.unique(tile_codes(fabric.weave.interlacement(), direction)):
+            yield swept_tile(fabric, direction, int(code))
 
 
 def _tiled(fabric: SolvedFabric, direction: Direction, grid: Grid) -> TiledYarns:
     codes = tile_codes(fabric.weave.interlacement(), direction)
     used = np.unique(codes)
     tile = np.searchsorted(used, codes)
-    shape = evaluated([tile_patches(fabric, direction, int(code)) for code in used], grid)
+    shape = evaluated([swept_tile(fabric, direction, int(code)).patches for code in used], grid)
 
     along = fabric.directions[direction].crossed_spacing
     axis = (np.arange(len(codes)) + 0.5) * fabric.crossed(direction).crossed_spacing

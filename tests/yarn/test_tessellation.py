@@ -10,8 +10,9 @@ from fabric_cad.model.identification import identify
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.directions import Direction
 from fabric_cad.weave.weaves import yarns_of
+from fabric_cad.yarn.edges import allowed_over, allowed_scaled_jacobian
 from fabric_cad.yarn.swept import SweptYarn
-from fabric_cad.yarn.tessellation import BITS, tessellate, tile_codes
+from fabric_cad.yarn.tessellation import BITS, swept_tiles, tessellate, tile_codes
 from fabric_cad.yarn.tiles import COARSE, SIDES, Grid, basis
 from fabric_cad.yarn.volumes import yarn_volumes
 
@@ -188,3 +189,8 @@ def test_a_tile_is_not_made_twice_and_arrays_cannot_be_written_to():
     assert len(weft.tiles.points) == len(np.unique(weft.tiles.tile)) <= 32
     with pytest.raises(ValueError, match="read-only"):
         weft.tiles.points[0] = 0.0
+
+
+@pytest.mark.parametrize("name", FABRICS)
+def test_the_edges_of_tiles_allow_what_those_of_the_yarns_do(name):
+    assert allowed_over(swept_tiles(FABRICS[name])) == pytest.approx(allowed_scaled_jacobian(FABRICS[name]), rel=1e-9)
