@@ -1,4 +1,4 @@
-"""Studies and ``simulation.toml``, spoilt in values, keys, nesting, text and bytes."""
+"""Studies, ``simulation.toml`` and ``composite.toml``, spoilt in values, keys, nesting, text and bytes."""
 
 from __future__ import annotations
 
@@ -71,21 +71,35 @@ PLACE = "{0}(:[0-9]+: |: [^ :]+: |: not TOML)"
 
 
 def trial(seed: int) -> Trial:
-    """A spoilt study, or one time in three a spoilt ``simulation.toml``."""
+    """A spoilt study, or one time in three a spoilt ``simulation.toml`` or ``composite.toml``."""
     rng = np.random.default_rng((2, seed))
     families = {f"families/{path.name}": path.read_bytes() for path in SHIPPED.glob("*.csv")}
     if seed % 3 == 2:
-        text = (SHIPPED / "simulation.toml").read_text(encoding="utf-8")
-        command = pick(rng, (("tension", "plain"), ("shear", "basket22"), ("tension", "twill32")))
-        command = (*command, "--deck", "calculix")
-        files = families | {"families/simulation.toml": toml_bytes(rng, text)}
-        place = PLACE.format(r"families/simulation\.toml")
-        return Trial(f"{' '.join(command)} by a spoilt simulation.toml", command, files, place)
+        return _settings_trial(rng, families, "composite.toml" if seed % 6 == 5 else "simulation.toml")
+
     text = pick(rng, STUDIES)
     files = families | {"study.toml": toml_bytes(rng, text)}
     base = text.split('"')[1]
     place = PLACE.format(r"study\.toml")
     return Trial(f"a spoilt study of {base}", ("study", "study.toml"), files, place, LEAVES, fresh=seed % 50 == 12)
+
+
+_COMMANDS = {
+    "simulation.toml": (("tension", "plain"), ("shear", "basket22"), ("tension", "twill32")),
+    "composite.toml": (("voxels", "plain", "--cells", "6x6x6"), ("voxels", "twintex_tpeet44", "--cells", "5x5x5")),
+}
+_ENDINGS = {"simulation.toml": ("--deck", "calculix"), "composite.toml": ()}
+
+
+def _settings_trial(rng: np.random.Generator, families: dict[str, bytes], name: str) -> Trial:
+    """A command that reads a spoilt file beside the family tables."""
+    command = (*pick(rng, _COMMANDS[name]), *_ENDINGS[name])
+    files = families | {f"families/{name}": toml_bytes(rng, (SHIPPED / name).read_text(encoding="utf-8"))}
+    place, leaves = PLACE.format(rf"families/{re.escape(name)}"), r"build/\w+/voxels\.(npz|vti)"
+    title = f"{' '.join(command)} by a spoilt {name}"
+    return (
+        Trial(title, command, files, place, leaves) if command[0] == "voxels" else Trial(title, command, files, place)
+    )
 
 
 def toml_bytes(rng: np.random.Generator, text: str) -> bytes:
