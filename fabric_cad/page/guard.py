@@ -62,8 +62,9 @@ def _fault(headers, method: str, path: str, host: str) -> str | None:
     is_socket = headers.get("Upgrade", "").lower() == "websocket"
     if origin not in (None, f"http://{host}") or (is_socket and origin is None):
         return "another origin"
-    if headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin"):
-        return "another site"
+    is_visit = headers.get("Sec-Fetch-Mode") == "navigate" and headers.get("Sec-Fetch-Dest") == "document"
+    if headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin") and not is_visit:
+        return "another site"  # a visit from elsewhere shows the page, which is nothing without the token
     if method not in ("GET", "HEAD", "POST") or (method == "POST" and path != "/paraview/"):
         return "not asked for here"
     return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import atexit
 import base64
 import logging
 import os
@@ -163,4 +164,5 @@ def open_browser(address: Address) -> None:
     text = f'<!DOCTYPE html><meta http-equiv="refresh" content="0;url={escape(address.url)}"><title>fabric-cad</title>'
     with tempfile.NamedTemporaryFile("w", suffix=".html", prefix="fabric-cad-", delete=False) as file:
         file.write(text)
+    atexit.register(Path(file.name).unlink, missing_ok=True)
     webbrowser.open(Path(file.name).as_uri())

@@ -267,6 +267,16 @@ def test_the_link_holds_the_row_and_two_pages_do_not_mix(served, browser, tab):
     assert tab.input_value("#f-weft_width_mm") == "2.9"
 
 
+def test_a_file_that_leads_to_the_page_opens_it(served, browser, tmp_path):
+    leading = tmp_path / "lead.html"
+    leading.write_text(f'<!DOCTYPE html><meta http-equiv="refresh" content="0;url={served[1]}">')
+    page = browser.new_page()
+    page.goto(leading.as_uri())
+    page.wait_for_url("http://127.0.0.1:*/**")
+    ready(page)
+    page.close()
+
+
 def test_the_cell_is_made_and_its_step_downloaded_and_read_back(served, tab, tmp_path):
     from fabric_cad.cad import read_step
 

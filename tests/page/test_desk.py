@@ -2,6 +2,7 @@
 
 import json
 import time
+from pathlib import Path
 
 import pytest
 from wifs import WIF
@@ -12,7 +13,7 @@ from fabric_cad.page.datasheet import datasheet, write_datasheet
 from fabric_cad.page.desk import MOST_TABS, Desk, Places
 from fabric_cad.page.edited import edited, solution_of
 from fabric_cad.page.jobs import Job
-from fabric_cad.page.server import inside_here
+from fabric_cad.page.server import Address, inside_here, open_browser
 from fabric_cad.support.errors import OutputError
 
 ROWS = {row.names[0]: row for measured in read_families(shipped_families()).values() for row in measured}
@@ -128,6 +129,17 @@ def test_a_datasheet_is_one_page_of_a4(here, name):
     assert pdf.startswith(b"%PDF") and pdf.count(b"/Type /Page ") == 1
     write_datasheet(solution, here / "build" / "again")
     assert (here / "build" / "again" / "datasheet.pdf").read_bytes() == pdf
+
+
+def test_a_browser_is_opened_without_the_token_in_its_arguments(monkeypatch):
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    open_browser(Address(1234, "secret-token"))
+    (address,) = opened
+    file = Path(address.removeprefix("file://"))
+    assert "secret-token" not in address and "secret=secret-token" in file.read_text()
+    assert file.stat().st_mode & 0o077 == 0  # of its user alone
+    file.unlink()
 
 
 def test_a_cancelled_run_leaves_nothing(here):
