@@ -55,6 +55,10 @@ stiffness: $(READY) ## WEAVE=row: homogenised stiffness of its composite (OPTION
 voxels: $(READY) ## WEAVE=row: its composite on a regular grid (OPTIONS='--cells 200x200x60')
 	@$(BIN)/fabric-cad voxels $(WEAVE) $(OPTIONS)
 
+.PHONY: permeability
+permeability: $(READY) ## WEAVE=row: how a fluid flows between its yarns (OPTIONS=--margin-study)
+	@$(BIN)/fabric-cad permeability $(WEAVE) $(OPTIONS)
+
 .PHONY: show
 show: $(READY) ## WEAVE=row: the same cell in an interactive window
 	@$(BIN)/fabric-cad show $(WEAVE)

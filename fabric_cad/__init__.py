@@ -44,6 +44,7 @@ _FROM = {
     "CompositeOptions": "composite.options",
     "Margin": "composite.options",
     "make_stiffness": "composite.stiffness.run",
+    "make_permeability": "flow.run",
     "make_voxels": "composite.voxel_run",
     "voxelise": "composite.voxels",
     "read_constituents": "composite.constituents",

@@ -14,7 +14,7 @@ from ..meshing.section_mesh import section_mesh
 from ..model.solved import SolvedFabric
 from .space import Top
 
-USUAL = {"across": 6, "crossing": 6}
+USUAL = {"across": 6}
 """The mesh where nothing is said of it; elements are quadratic and follow the yarns' faces."""
 
 LAYERS = 6

@@ -115,3 +115,9 @@ def test_minres_tells_what_it_did_not_reach():
     matrix = np.diag([1.0, -2.0, 3.0, 5.0])
     with pytest.raises(SolverError, match="after 2 iterations the residual is"):
         solve(lambda v: matrix @ v, np.ones((4, 1)), lambda v: v, 1e-12, most=2)
+
+
+def test_a_closed_space_has_no_permeability():
+    mesh = QuadraticMesh.straight(box((2, 2, 2), (1.0, 1.0, 1.0), (False, False, False)))
+    _, flow = flow_between_walls(mesh, open_directions(mesh))
+    np.testing.assert_array_equal(flow.permeability, np.zeros((3, 3)))

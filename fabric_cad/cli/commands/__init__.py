@@ -5,7 +5,23 @@ from __future__ import annotations
 from typing import Any
 
 from ..options import Command
-from . import cell, composite, design, init, listing, loads, page, show, solve, stiffness, study, validate, voxels, wif
+from . import (
+    cell,
+    composite,
+    design,
+    init,
+    listing,
+    loads,
+    page,
+    permeability,
+    show,
+    solve,
+    stiffness,
+    study,
+    validate,
+    voxels,
+    wif,
+)
 
 
 def commands() -> tuple[Command[Any], ...]:
@@ -19,6 +35,7 @@ def commands() -> tuple[Command[Any], ...]:
         *loads.load_commands(),
         stiffness.COMMAND,
         voxels.COMMAND,
+        permeability.COMMAND,
         study.COMMAND,
         show.COMMAND,
         page.COMMAND,

@@ -8,6 +8,7 @@ from .crushing import plot_crushing
 from .cuts import plot_cut, plot_edges
 from .directions import plot_directions
 from .figures import save_figure
+from .flow import Section, plot_flow
 from .models import plot_gap_maps, plot_model_cuts
 from .outlines import sample, section_outline
 from .sections import plot_sections
@@ -17,10 +18,12 @@ from .tension import plot_tension_curves, plot_tension_surface
 from .trajectories import plot_trajectory
 
 __all__ = [
+    "Section",
     "plot_crushing",
     "plot_cut",
     "plot_directions",
     "plot_edges",
+    "plot_flow",
     "plot_gap_maps",
     "plot_model_cuts",
     "plot_sections",
