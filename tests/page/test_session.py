@@ -224,6 +224,15 @@ def test_a_new_column_is_added_to_the_header_alone(here):
     assert second == "s,5,2,0.7,1.2,0.003"
 
 
+def test_a_header_with_blank_cells_at_its_end_takes_new_columns_in_their_place(here):
+    path = here / "families" / "satin.csv"
+    path.write_text("name;harness;step;weft_density_per_mm;weft_width_mm;weft_crimp;;\ns;5;2;0,7;1,2;0,003;;\n")
+    row = edited(read_family(path)["s"]).changed(name="t", section="flat", lateral_height_mm="0.01")
+    save_row(row, "families")
+    assert path.read_text().splitlines()[1] == "s;5;2;0,7;1,2;0,003;;"
+    assert edited(read_family(path)["t"]) == row
+
+
 @pytest.mark.parametrize(
     ("changes", "word"),
     [
