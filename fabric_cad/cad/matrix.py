@@ -6,7 +6,7 @@ the matrix, with the floor, the ceiling and four sides of the box, which have th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain
 
 import cadquery as cq
@@ -17,6 +17,9 @@ from ..weave.directions import DIRECTIONS, Direction
 from ..weave.lattice import Lattice
 from ..yarn.skin import Patch, Skin
 from .solids import face_of, sew
+
+FILLED = 1e-9
+"""Relative error of the sum of all volumes up to which solids count as filling their box."""
 
 _TOUCHING = 1e-9  # mm, distance up to which two faces are one
 _IN_PLANE = 1e-7  # mm, as far as an edge may be from the side of the box in which it lies
@@ -97,3 +100,17 @@ def _planar(corners: np.ndarray, holes: list[cq.Edge]) -> cq.Face:
     """The face between four corners (4, 3), mm, with holes that some edges bound."""
     outline = cq.Wire.makePolygon([cq.Vector(*corner) for corner in corners.tolist()], close=True)
     return cq.Face.makeFromWires(outline, list(cq.Wire.combine(holes, _IN_PLANE)) if holes else [])
+
+
+def checked_volumes(solids: Mapping[str, cq.Solid], size: np.ndarray) -> dict[str, float]:
+    """The volume (mm3) of every solid of a composite, as read from its STEP file.
+
+    Raises :class:`BuildError` where one is not valid, or they do not fill the box, ``size`` (3,) in mm.
+    """
+    if faulty := [name for name, solid in solids.items() if not solid.isValid()]:
+        raise BuildError(f"{', '.join(faulty)}: no valid solid")
+    volumes = {name: solid.Volume(FILLED) for name, solid in solids.items()}
+    error = sum(volumes.values()) / float(size.prod()) - 1
+    if abs(error) > FILLED:
+        raise BuildError(f"the volumes of yarns and matrix are {error:.3g} of the box off its volume")
+    return volumes

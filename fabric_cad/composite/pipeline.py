@@ -97,7 +97,8 @@ def _write_step(fabric: SolvedFabric, cell: CompositeCell, path: Path, stages: S
     """Write the solids of yarns and matrix; their volumes, mm3, as read back."""
     with stages("load CadQuery"), uninterrupted():
         from ..cad import read_step
-        from .solids import build_composite, checked_volumes
+        from ..cad.matrix import checked_volumes
+        from .solids import build_composite
 
     with stages("solids"):
         solids = build_composite(fabric, cell.size)

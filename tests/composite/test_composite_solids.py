@@ -5,8 +5,9 @@ import pytest
 from fabrics import TWILL32, table
 
 from fabric_cad.cad import read_step
+from fabric_cad.cad.matrix import checked_volumes
 from fabric_cad.composite.matrix import centring
-from fabric_cad.composite.solids import build_composite, checked_volumes
+from fabric_cad.composite.solids import build_composite
 from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.measured.tables import read_families
 from fabric_cad.model.identification import identify

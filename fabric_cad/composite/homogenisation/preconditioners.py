@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import bsr_array
+
+if TYPE_CHECKING:
+    from scipy.sparse import bsr_array
 
 Operator = Callable[[np.ndarray], np.ndarray]
 
