@@ -11,9 +11,12 @@ constant over an element, so that M is made once an element for all blocks.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import bsr_array
+
+if TYPE_CHECKING:
+    from scipy.sparse import bsr_array
 
 from .elements import Elements
 
@@ -39,6 +42,8 @@ class Integrals:
 def assemble(elements: Elements, coefficients: np.ndarray) -> tuple[bsr_array, Integrals]:
     """The matrix, in blocks n x n, of ``coefficients`` (elements, n, n, 3, 3), c[i, k, j, l] above; the integrals."""
     count, size = elements.count, coefficients.shape[1]
+    from scipy.sparse import bsr_array
+
     corners = elements.unknowns[elements.mesh.hexahedra]
     rows, columns, places = _pattern(corners, count)
     blocks = np.zeros((len(columns), size, size))
