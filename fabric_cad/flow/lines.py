@@ -12,16 +12,18 @@ from scipy.sparse.csgraph import connected_components
 from ..meshing.hexahedron import EDGES
 from .quadratic import PLACES, QuadraticMesh
 
+_UPRIGHT = 0.7  # of an edge's length that is height
+
 
 def vertical_links(mesh: QuadraticMesh) -> np.ndarray:
-    """Pairs (pairs, 2) of nodes that follow each other along the axis of a hexahedron that is nearest the vertical."""
+    """Pairs (pairs, 2) of nodes that stand above each other in hexahedra one of whose axes is upright."""
     corners = mesh.mesh.points[mesh.mesh.hexahedra]
-    along = (corners[:, EDGES[..., 1]] - corners[:, EDGES[..., 0]]).mean(axis=2)  # (elements, axes, 3)
-    upright = np.argmax(np.abs(along[..., 2]) / np.linalg.norm(along, axis=2), axis=1)
+    along = corners[:, EDGES[..., 1]] - corners[:, EDGES[..., 0]]  # (elements, axes, edges, 3)
+    upright = (np.abs(along[..., 2]) > _UPRIGHT * np.linalg.norm(along, axis=3)).all(axis=2)
     pairs = []
     for axis in range(3):
         lower = np.flatnonzero(PLACES[:, axis] < 1)
-        own = mesh.nodes[upright == axis]
+        own = mesh.nodes[upright[:, axis]]
         pairs.append(np.stack([own[:, lower], own[:, lower + 3**axis]], axis=-1).reshape(-1, 2))
     return np.concatenate(pairs)
 

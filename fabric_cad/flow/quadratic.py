@@ -44,13 +44,15 @@ class Chunk:
     """Some elements at 3 x 3 x 3 points.
 
     ``elements`` (n,) their indices; ``values`` (n, points, 27) and ``gradients`` (n, points, 27, 3), 1/mm, of the
-    nodes' basis functions; ``linear`` (n, points, 8) those of the corners; ``weights`` (n, points), mm3.
+    nodes' basis functions, ``linear`` (n, points, 8) and ``linear_gradients`` (n, points, 8, 3) of the corners alone;
+    ``weights`` (n, points), mm3.
     """
 
     elements: np.ndarray
     values: np.ndarray
     gradients: np.ndarray
     linear: np.ndarray
+    linear_gradients: np.ndarray
     weights: np.ndarray
 
 
@@ -128,6 +130,7 @@ class QuadraticMesh:
                 np.stack([np.broadcast_to(basis.basis[node][0], shape) for node in back], axis=-1),
                 np.stack([basis.basis[node][0].grad for node in back]).transpose(2, 3, 0, 1),
                 np.stack([np.broadcast_to(linear.basis[node][0], shape) for node in to_corner], axis=-1),
+                np.stack([linear.basis[node][0].grad for node in to_corner]).transpose(2, 3, 0, 1),
                 basis.dx,
             )
 

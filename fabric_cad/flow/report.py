@@ -35,6 +35,7 @@ class PermeabilityReport:
     axes: list[list[float]]
     margin_mm: float
     yarns: str
+    fibre_diameter_um: float | None
     top: str
     error_bar_percent: float
     closed: list[str]
@@ -61,7 +62,8 @@ def permeability_report(row: Family, solved: Permeability, seconds: Mapping[str,
         principal_mm2=solved.principal.tolist(),
         axes=solved.axes.tolist(),
         margin_mm=solved.solved.cell.margin,
-        yarns="rigid",
+        yarns="rigid" if solved.solved.pores is None else "porous",
+        fibre_diameter_um=None if solved.solved.pores is None else 1000 * solved.solved.pores.diameter,
         top=str(solved.solved.top),
         error_bar_percent=float(solved.error.max()),
         closed=solved.closed,

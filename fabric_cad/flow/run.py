@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from ..support.staging import staged
 from .computation import CellFlow, cell_flow
 from .fineness import Fineness, fineness
 from .permeability import Permeability, permeability
+from .pores import Pores, pores_of
 from .report import PermeabilityReport, permeability_report, write_table
 from .space import Top
 
@@ -26,6 +27,7 @@ NAME = "permeability"
 
 def make_permeability(
     row: Family,
+    families: str | Path,
     out: str | Path,
     *,
     mesh: Mapping[str, Any] | None = None,
@@ -34,12 +36,15 @@ def make_permeability(
     grading: float | None = None,
     top: Top = Top.PERIODIC,
     margin_study: bool = False,
+    fibre_diameter: float | None = None,
     stages: Stages | None = None,
 ) -> PermeabilityReport:
     """Solve the flow through the cell of a table of one row; files in ``out/<row name>``, the report is returned.
 
     ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`, ``layers`` of ``grading``
-    lie between the yarns and the box; with ``margin_study`` the tensor at half and twice the margin is there too.
+    lie between the yarns and the box; with a ``fibre_diameter`` (micrometres) the yarns are porous, their fibre
+    fraction as the ``composite.toml`` in ``families`` or the row's linear densities say; with ``margin_study`` the
+    tensor at half and twice the margin is there too.
     Raises :class:`FabricCadError`; earlier results are then as they were.
     """
     expect_row(row)
@@ -48,9 +53,10 @@ def make_permeability(
     with staged(Path(out) / name, renew_digests) as folder:
         with stages("identify"):
             fabric = identify(row)[name]
+            pores = None if fibre_diameter is None else pores_of(row, families, fibre_diameter)
             fine = fineness(fabric, mesh or {}, top=top, margin=margin, layers=layers, grading=grading)
 
-        solved = permeability(fabric, fine, _told(stages), top=top, margin_study=margin_study)
+        solved = permeability(fabric, fine, _told(stages, pores), top=top, margin_study=margin_study)
         _write(solved, folder, stages)
         report = permeability_report(row, solved, stages.seconds)
         write_table(report, folder / f"{NAME}.csv")
@@ -59,13 +65,13 @@ def make_permeability(
     return report
 
 
-def _told(stages: Stages):
+def _told(stages: Stages, pores: Pores | None) -> Callable[[SolvedFabric, Fineness, Top], CellFlow]:
     """:func:`cell_flow` as stages of their own."""
     names = iter(("flow", "coarser mesh", "half the margin", "twice the margin"))
 
     def solve(fabric: SolvedFabric, fine: Fineness, top: Top) -> CellFlow:
         with stages(next(names)):
-            return cell_flow(fabric, fine, top)
+            return cell_flow(fabric, fine, top, pores)
 
     return solve
 

@@ -12,12 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, diags_array
+from scipy.sparse.linalg import splu
 
 from .equations import Equations
 from .lines import line_inverse
-from .minres import solve
+from .minres import Operator, solve
 
+_PINNED = 1e-6  # of the least seepage: a pressure has no level
 TOLERANCE = 1e-5
 """Residual over load at which a direction is solved; a permeability is then right to some 1e-8."""
 
@@ -54,12 +56,12 @@ def stokes_flow(equations: Equations, directions: np.ndarray, volume: float, tol
 
     free = equations.free[:, :, None].astype(float)
     loads = (equations.weights[:, None, None] * directions.T * free).reshape(-1, count)
-    laplacian, divergence, gradient = equations.laplacian, equations.divergence, equations.divergence.T.tocsr()
-    inverses = _inverses(equations)
+    divergence, gradient = equations.divergence, equations.divergence.T.tocsr()
+    inverses, through_pores = _inverses(equations), _seepage_inverse(equations)
 
     def multiply(values: np.ndarray) -> np.ndarray:
         moving, pressure = values[: 3 * nodes], values[3 * nodes :]
-        force = (laplacian @ moving.reshape(nodes, -1)).reshape(-1, count) - gradient @ pressure
+        force = _friction(equations, moving) - gradient @ pressure
         held = force.reshape(nodes, 3, count) * free
         return np.concatenate([held.reshape(-1, count), -(divergence @ moving)])
 
@@ -68,7 +70,7 @@ def stokes_flow(equations: Equations, directions: np.ndarray, volume: float, tol
         for components, inverse in inverses:
             moved[:, components] = (inverse @ moved[:, components].reshape(nodes, -1)).reshape(nodes, -1, count)
         moved *= free
-        pressure = values[3 * nodes :] / equations.masses[:, None]
+        pressure = values[3 * nodes :] / equations.masses[:, None] + through_pores(values[3 * nodes :])
         pressure -= equations.masses @ pressure / equations.masses.sum()  # its mean means nothing
         return np.concatenate([moved.reshape(-1, count), pressure])
 
@@ -80,7 +82,7 @@ def stokes_flow(equations: Equations, directions: np.ndarray, volume: float, tol
     permeability = directions.T @ ((crossed + crossed.T - energy) / volume) @ directions
 
     moving = found[: 3 * nodes]
-    dissipated = np.einsum("nl,nl->l", moving, (laplacian @ moving.reshape(nodes, -1)).reshape(-1, count))
+    dissipated = np.einsum("nl,nl->l", moving, _friction(equations, moving))
     made = np.einsum("cl,c->l", (divergence @ moving) ** 2, 1 / equations.masses)
     return Flow(
         directions=directions,
@@ -94,12 +96,37 @@ def stokes_flow(equations: Equations, directions: np.ndarray, volume: float, tol
     )
 
 
+def _friction(equations: Equations, moving: np.ndarray) -> np.ndarray:
+    """Forces of viscosity and drag on velocities (3 nodes, directions)."""
+    velocity = moving.reshape(len(equations.free), 3, -1)
+    force = (equations.laplacian @ moving.reshape(len(velocity), -1)).reshape(velocity.shape)
+    for (i, j), matrix in equations.drag.items():
+        force[:, i] += matrix @ velocity[:, j]
+        if i != j:
+            force[:, j] += matrix @ velocity[:, i]
+    return force.reshape(moving.shape)
+
+
+def _seepage_inverse(equations: Equations) -> Operator:
+    """The inverse of what pressure drives through pores: there it, and no longer the mass, is what the saddle sees.
+
+    J. Cahouet and J.-P. Chabard, Int. J. Numer. Methods Fluids 8 (1988) 869-895.
+    """
+    if equations.seepage is None:
+        return np.zeros_like
+
+    scale = equations.seepage.diagonal().min() / equations.masses.max()
+    whole = equations.seepage + _PINNED * scale * diags_array(equations.masses)
+    return splu(whole.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve
+
+
 def _inverses(equations: Equations) -> list[tuple[list[int], csr_array]]:
     """Velocity's components that are held at the same nodes, and the Laplacian of all others inverted on lines."""
     free = equations.free
     groups: list[list[int]] = []
     for component in range(3):
-        same = [group for group in groups if np.array_equal(free[:, group[0]], free[:, component])]
+        alike = [group for group in groups if np.array_equal(free[:, group[0]], free[:, component])]
+        same = [] if equations.drag else alike
         if same:
             same[0].append(component)
         else:
@@ -107,6 +134,12 @@ def _inverses(equations: Equations) -> list[tuple[list[int], csr_array]]:
 
     alone = equations.line.max() + 1 + np.arange(len(free))  # a held node stands on no line
     return [
-        (group, line_inverse(equations.laplacian, np.where(free[:, group[0]], equations.line, alone)))
+        (group, line_inverse(_diagonal_block(equations, group[0]), np.where(free[:, group[0]], equations.line, alone)))
         for group in groups
     ]
+
+
+def _diagonal_block(equations: Equations, component: int) -> csr_array:
+    """What a velocity component's viscosity and drag do to itself."""
+    drag = equations.drag.get((component, component))
+    return equations.laplacian if drag is None else equations.laplacian + drag

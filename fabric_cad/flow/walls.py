@@ -21,7 +21,7 @@ from .lines import lines_of, vertical_links
 from .quadratic import FACE_NODES, QuadraticMesh
 
 _ON_FACE = 0.02  # of a yarn's thickness: corners nearer than this to a face are on it
-_MOST_TURNS = 8
+_TURNS = 4
 _CORNERS = [0, 2, 6, 8]  # among a face's nine nodes
 _BETWEEN = {1: [0, 2], 3: [0, 6], 5: [2, 8], 7: [6, 8], 4: _CORNERS}  # and those between which the others lie
 
@@ -51,9 +51,7 @@ def curved(mesh: QuadraticMesh, fabric: SolvedFabric, skins: list[Skin], shift: 
             higher = face[:, node] - face[:, around].mean(axis=1)
             rise[own[:, node]] = np.nan_to_num(higher)
 
-    line = lines_of(vertical_links(mesh), len(places))
-    rise = _same_by_a_period(mesh, _faded(line, places, rise, on_skin))
-    return _unfolded(mesh, rise)
+    return _unfolded(mesh, places, rise, on_skin)
 
 
 def _same_by_a_period(mesh: QuadraticMesh, rise: np.ndarray) -> np.ndarray:
@@ -62,19 +60,25 @@ def _same_by_a_period(mesh: QuadraticMesh, rise: np.ndarray) -> np.ndarray:
     return (totals / np.bincount(mesh.unknowns))[mesh.unknowns]
 
 
-def _unfolded(mesh: QuadraticMesh, rise: np.ndarray) -> QuadraticMesh:
-    """The mesh raised, but for hexahedra that would fold over: their nodes stay midway."""
-    for _ in range(_MOST_TURNS):
+def _unfolded(mesh: QuadraticMesh, places: np.ndarray, rise: np.ndarray, on_skin: np.ndarray) -> QuadraticMesh:
+    """The mesh raised, but for hexahedra that would fold over: those stay midway, at last with their lines."""
+    line = lines_of(vertical_links(mesh), len(places))
+    kept = np.ones(len(rise), dtype=bool)
+    for turn in range(2 * _TURNS):
         moved = np.zeros_like(mesh.points)
-        moved[:, 2] = rise
+        moved[:, 2] = kept * _same_by_a_period(mesh, _faded(line, places, rise, on_skin))
         raised = mesh.moved(moved)
         folded = raised.folded()
         if not len(folded):
             break
 
-        kept = np.ones(len(rise), dtype=bool)
-        kept[mesh.unknowns[mesh.nodes[folded]]] = False
-        rise = np.where(kept[mesh.unknowns], rise, 0.0)
+        same = np.ones(len(rise), dtype=bool)
+        same[mesh.unknowns[mesh.nodes[folded]]] = False
+        kept &= same[mesh.unknowns]
+        if turn >= _TURNS:
+            upright = np.ones(len(rise), dtype=bool)
+            upright[line[~kept]] = False
+            rise = np.where(upright[line], rise, 0.0)
     return raised
 
 
@@ -101,17 +105,24 @@ def _face_heights(swept: SweptYarn, places: np.ndarray, shift: float) -> np.ndar
 
 
 def _faded(line: np.ndarray, places: np.ndarray, rise: np.ndarray, on_skin: np.ndarray) -> np.ndarray:
-    """What (nodes,) every node rises: ``rise`` on skins, fading from a line's outermost ones to its end."""
+    """What (nodes,) every node rises: ``rise`` on skins, linear between a line's outermost, fading from those on."""
+    height = places[:, 2]
     skin = np.flatnonzero(on_skin)
-    skin = skin[np.lexsort((places[skin, 2], line[skin]))]
-    rise = np.where(on_skin, rise, 0.0)
-    for members, sign in ((skin, 1.0), (skin[::-1], -1.0)):
-        height = sign * places[:, 2]
-        outermost, end = np.full(line.max() + 1, -1), np.full(line.max() + 1, -np.inf)
-        outermost[line[members]] = members  # the last one written is a line's outermost
-        np.maximum.at(end, line, height)
-        start = outermost[line]
-        beyond = (start >= 0) & ~on_skin & (height > height[start])
-        share = (end[line] - height)[beyond] / (end[line] - height[start])[beyond]
-        rise[beyond] = share * rise[start[beyond]]
-    return rise
+    skin = skin[np.lexsort((height[skin], line[skin]))]
+    low, high = np.full(line.max() + 1, -1), np.full(line.max() + 1, -1)
+    high[line[skin]], low[line[skin[::-1]]] = skin, skin[::-1]  # the last one written is a line's outermost
+    floor, ceiling = np.full(line.max() + 1, np.inf), np.full(line.max() + 1, -np.inf)
+    np.minimum.at(floor, line, height)
+    np.maximum.at(ceiling, line, height)
+
+    risen = np.where(on_skin, rise, 0.0)
+    others = np.flatnonzero(~on_skin & (low[line] >= 0))
+    own = line[others]
+    z, lower, upper = height[others], height[low[own]], height[high[own]]
+    ends = [floor[own], lower, upper, ceiling[own]]
+    values = [np.zeros(len(own)), rise[low[own]], rise[high[own]], np.zeros(len(own))]
+    for i in range(3):
+        within = (z >= ends[i]) & (z <= ends[i + 1]) & (ends[i + 1] > ends[i])
+        share = (z - ends[i])[within] / (ends[i + 1] - ends[i])[within]
+        risen[others[within]] = values[i][within] * (1 - share) + values[i + 1][within] * share
+    return risen

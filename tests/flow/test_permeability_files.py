@@ -91,6 +91,25 @@ def test_plates_close_the_normal_and_the_report_says_so(tmp_path):
     assert "K is 0 along z" in sentence and "plates" in sentence
 
 
+def test_porous_yarns_let_a_little_more_through(written, tmp_path):
+    rigid, porous = written[1], run(tmp_path, "--yarns", "porous", "--fibre-diameter", "70")
+    assert porous["yarns"] == "porous" and porous["fibre_diameter_um"] == pytest.approx(70)
+    for axis in range(3):
+        assert 1 < porous["K_mm2"][axis][axis] / rigid["K_mm2"][axis][axis] < 1.05
+    assert porous["mesh"]["fine"]["porosity"] == pytest.approx(rigid["mesh"]["fine"]["porosity"], rel=1e-9)
+
+
+@pytest.mark.parametrize("options", [["--yarns", "porous", "--fibre-diameter", "0"], ["--fibre-diameter", "7"]])
+def test_a_fibre_without_diameter_or_pores_is_refused(tmp_path, capsys, options):
+    common = ["--families", str(shipped_families()), "--out", str(tmp_path)]
+    try:
+        status = main(["permeability", "plain", *options, *common])
+    except SystemExit as end:
+        status = end.code
+    assert status == 2
+    assert "fibre-diameter" in capsys.readouterr().err
+
+
 def test_a_margin_that_leaves_nothing_is_refused(tmp_path, capsys):
     common = ["--families", str(shipped_families()), "--out", str(tmp_path)]
     assert main(["permeability", "plain", "--margin", "0", *common]) == 2

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...support.numerals import number, whole
 from ..composite_options import BoxOptions, declare_margin
-from ..options import Command, declare_mesh, declare_rows
+from ..options import Command, UsageError, declare_mesh, declare_rows
 from ..rows import find_row, work_on_rows
 from ..voice import Voice
 
@@ -20,6 +20,8 @@ class PermeabilityOptions(BoxOptions):
     """Rows, their meshes and boxes, what lies above them, and what is asked for beside the tensor."""
 
     top: str = "periodic"
+    yarns: str = "rigid"
+    fibre_diameter: float | None = None
     margin_study: bool = False
 
 
@@ -48,6 +50,18 @@ def declare(parser: argparse.ArgumentParser) -> None:
         "surface above (default: periodic)",
     )
     parser.add_argument(
+        "--yarns",
+        choices=("rigid", "porous"),
+        default="rigid",
+        help="rigid: flow between the yarns alone; porous: between their fibres too (default: rigid)",
+    )
+    parser.add_argument(
+        "--fibre-diameter",
+        type=number,
+        metavar="UM",
+        help="of the fibres in porous yarns, micrometres (default 7: carbon)",
+    )
+    parser.add_argument(
         "--margin-study",
         action="store_true",
         help="the tensor at half and at twice the margin too: it decides the result",
@@ -62,13 +76,19 @@ def run(options: PermeabilityOptions, voice: Voice) -> int:
 def make(name: str, options: PermeabilityOptions, voice: Voice) -> None:
     """Solve the flow through the cell of one row into OUT/<row>."""
     from ...cell.pipeline import Stages
+    from ...flow.pores import FIBRE_DIAMETER
     from ...flow.report import summary
     from ...flow.run import make_permeability
     from ...flow.space import Top
 
+    if options.yarns == "rigid" and options.fibre_diameter is not None:
+        raise UsageError("--fibre-diameter goes with --yarns porous")
+
     row = find_row(name, options, voice)
+    diameter = FIBRE_DIAMETER if options.fibre_diameter is None else options.fibre_diameter
     report = make_permeability(
         row,
+        options.families,
         options.out,
         mesh=options.mesh,
         margin=options.box.margin,
@@ -76,6 +96,7 @@ def make(name: str, options: PermeabilityOptions, voice: Voice) -> None:
         grading=options.grading,
         top=Top(options.top),
         margin_study=options.margin_study,
+        fibre_diameter=diameter if options.yarns == "porous" else None,
         stages=Stages(voice.stage),
     )
     voice.warn(report.warnings)
