@@ -118,7 +118,7 @@ notebooks: $(READY) ## run the notebooks and store them with their outputs
 	@$(BIN)/python tests/notebooks.py
 
 .PHONY: stability
-stability: $(READY) ## 200 random fabrics of every part (PART=narrow SEEDS=0-50), each through CAD and mesh
+stability: $(READY) ## random fabrics through CAD and mesh, or filled with matrix (PART=narrow SEEDS=0-50)
 	@$(BIN)/python tests/stability.py $(PART:%=--part %) $(SEEDS:%=--seeds %)
 
 .PHONY: fuzz

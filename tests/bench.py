@@ -140,6 +140,31 @@ class Bench:
         size = f"{report['mesh']['hexahedra']} hexahedra, {report['solver']['iterations']} iterations"
         return Figure(**(asdict(figure) | {"size": size, "stages": report["seconds"]}))
 
+    def matrix(self, row: str, promised: str) -> Figure:
+        """What the matrix of a composite cell takes beyond the mesh of its yarns: processor time in one process."""
+        code = (
+            "import sys, time\n"
+            "from fabric_cad import composite_mesh_options, identify, read_families\n"
+            "from fabric_cad.composite.matrix import composite_cell\n"
+            "from fabric_cad.composite.spacing import gap_shares\n"
+            "from fabric_cad.meshing.closed import closed_mesh\n"
+            "from fabric_cad.meshing.plan import plan_yarns\n"
+            "from fabric_cad.weave.weaves import yarns_of\n"
+            "rows = (row for family in read_families(sys.argv[1]).values() for row in family)\n"
+            "fabric = identify(next(row for row in rows if row.names == (sys.argv[2],)))[sys.argv[2]]\n"
+            "mesh = composite_mesh_options(fabric)\n"
+            "yarns = yarns_of(fabric.weave.interlacement())\n"
+            "plans = plan_yarns(fabric, yarns, mesh, gap_shares(fabric, mesh))\n"
+            "alone = closed_mesh(fabric, plans); start = time.process_time()\n"
+            "composite_cell(alone, fabric, plans); print(time.process_time() - start)"
+        )
+        command = [PYTHON, "-c", code, str(ROOT / "families"), row]
+        seconds = [
+            float(subprocess.run(command, check=True, capture_output=True, text=True).stdout) for _ in range(self.runs)
+        ]
+        what = f"matrix of {row} beyond its yarns' mesh, processor time"
+        return Figure(what, statistics.median(seconds), runs=self.runs, promised=promised)
+
     def floors(self, row: str) -> list[Figure]:
         """Two stages of a cell made before, each after its floor."""
         made = self.folder / "build" / row
@@ -276,6 +301,7 @@ FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
     lambda b: b.tension("twill22", "k = 1 to 0.4 %", _EQUAL, "60 s"),
     lambda b: b.cells(200, "0.7 s"),
     lambda b: b.page(),
+    lambda b: b.matrix("twill32", "0.5 s"),
     lambda b: b.stiffness("plain", "8 s"),
     lambda b: b.stiffness("twill32", "30 s"),
     lambda b: b.stiffness("plain", "300 s, 4000 MB", *_FINE, runs=1),

@@ -30,6 +30,7 @@ from .grid import Lines, lines_across
 from .nodes import Nodes
 from .options import USUAL, CompositeOptions
 from .resin import lay_all_resin, reach_of
+from .resin_check import MeshedResin, check_resins
 from .resin_mesh import resin_hexahedra, resin_nodes
 from .sheets import Sheets, fill_pockets, lay_yarns, layers_of
 from .spacing import gap_shares
@@ -62,7 +63,9 @@ def composite_cell(
     half = fabric.fabric_thickness / 2 + margin
     nodes = Nodes(points)
     strips = [closed.renumber(strip) for strip in strips]
-    matrix = _fill(nodes, strips, (x, y), half, options.shares())
+    layers, resins = _fill(nodes, strips, (x, y), half, options.shares())
+    check_resins(resins, nodes.points, fabric)
+    matrix = np.concatenate([*layers, *(resin.hexahedra for resin in resins)])
     hexahedra = np.concatenate([closed.stands_for[yarns.hexahedra], matrix])
     body = np.concatenate([yarns.body, np.full(len(matrix), len(yarns.bodies))])
     surfaces = {name: closed.stands_for[quads] for name, quads in yarn_faces(yarns, closed.crossing).items()}
@@ -111,8 +114,11 @@ def centring(fabric: SolvedFabric) -> float:
 
 def _fill(
     nodes: Nodes, strips: Sequence[Strip], axes: tuple[Lines, Lines], half: float, shares: np.ndarray
-) -> np.ndarray:
-    """The matrix's hexahedra (elements, 8), whose nodes are added; the box reaches ``half`` (mm) up and down."""
+) -> tuple[list[np.ndarray], list[MeshedResin]]:
+    """The matrix's hexahedra (elements, 8), whose nodes are added; the box reaches ``half`` (mm) up and down.
+
+    Those of the layers below and above the yarns, and of the strips of resin.
+    """
     x, y = axes
     sheets, reach = Sheets.empty(x, y), reach_of(strips, x)
     lay_yarns(sheets, strips, x, y)
@@ -125,11 +131,12 @@ def _fill(
     sections = [resin_nodes(resin, nodes) for resin in resins]
     slabs = _slabs(sheets, nodes, axes, half, shares)
     images = _images(nodes, strips, (x.places[-1], y.places[-1]))
-    hexahedra = [_columns(_unrolled(slab, images)) for slab in slabs]
+    layers = [_columns(_unrolled(slab, images)) for slab in slabs]
+    meshed = []
     for resin, section in zip(resins, sections):
         after = images[resin.direction.axis][section[:1]]
-        hexahedra.append(resin_hexahedra(resin, np.vstack([section, after])))
-    return np.concatenate(hexahedra)
+        meshed.append(MeshedResin(resin, resin_hexahedra(resin, np.vstack([section, after]))))
+    return layers, meshed
 
 
 def _slabs(

@@ -11,14 +11,22 @@ import numpy as np
 
 from ..meshing.options import MeshOptions, mesh_options
 from ..model.solved import SolvedFabric
+from ..section.strips import FIRST, LAST
 from ..support.errors import InputError, Problem
 from ..weave.directions import DIRECTIONS, Direction
+from ..yarn.swept import swept_yarns
 
-_SIDES = 1.5
-"""Width of a strip of resin beside a flat side, in heights of the side."""
+_SIDES = MappingProxyType({"flat": 1.5, "round": 3.0})
+"""Width of a strip of resin at most, in heights of the side where that is lowest: wider ones are too pointed."""
 
 _OF_HALF_GAP = 0.65
-"""Share of half a gap that a strip beside arcs takes, and one beside a flat side at most."""
+"""Share of half a gap that a strip beside arcs takes at most."""
+
+_STEEP_SIDES, _LEAST_OF_HALF_GAP = 0.4, 0.15
+"""Width of a strip beside a flat side in a narrow gap, in heights of the side, and its least share of half the gap.
+
+There the other yarns climb steeply, and a strip that lies on them bends with them: the narrower it is, the less.
+"""
 
 
 def composite_mesh_options(fabric: SolvedFabric, **asked: Any) -> MeshOptions:
@@ -61,9 +69,28 @@ def gap_shares(fabric: SolvedFabric, options: MeshOptions) -> Mapping[Direction,
     shares = {}
     for direction in DIRECTIONS:
         width = (fabric.directions[direction].crossed_spacing - fabric.crossed(direction).width) / 2
-        strip = _OF_HALF_GAP
-        if fabric.section == "flat":
-            strip = min(_SIDES * fabric.lateral_height / width, strip)
+        strip = _strip_share(fabric.section, lowest_side(fabric, direction.other) / width)
         inner, outer = np.linspace(0.0, strip, taken + 1), np.linspace(strip, 1.0, half - taken + 1)
         shares[direction] = np.concatenate([inner, outer[1:]])
     return MappingProxyType(shares)
+
+
+def _strip_share(section: str, side: float) -> float:
+    """Share of half a gap that a strip takes beside a side whose height is ``side`` halves of the gap."""
+    most = _SIDES[section] * side
+    if section == "flat":
+        return min(most, max(_STEEP_SIDES * side, _LEAST_OF_HALF_GAP), _OF_HALF_GAP)
+    return min(most, _OF_HALF_GAP)
+
+
+def lowest_side(fabric: SolvedFabric, direction: Direction) -> float:
+    """The least height (mm) of the sides of a direction's yarns, between the contact's and the free side."""
+    if fabric.section == "flat":
+        return fabric.lateral_height
+    own = [swept for swept in swept_yarns(fabric) if swept.yarn.direction is direction]
+    sections = [section for swept in own for section in swept.sections]
+    return min(
+        float(section.strips[f"{edge}_upper"].poles[inner, 1] - section.strips[f"{edge}_lower"].poles[inner, 1])
+        for section in sections
+        for edge, inner in (("left", LAST), ("right", FIRST))
+    )

@@ -5,9 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from composite_checks import check_fills, check_repeats, face_counts
 from fabrics import DRAWS, TWILL32, table
 
-from fabric_cad.composite.cell import BOX_FACES, MATRIX
+from fabric_cad.composite.cell import MATRIX
 from fabric_cad.composite.matrix import composite_cell, mesh_composite
 from fabric_cad.composite.options import CompositeOptions, Margin
 from fabric_cad.composite.spacing import composite_mesh_options, gap_shares
@@ -42,37 +43,6 @@ def random_composite(kind, seed):
         return fabric, mesh_composite(fabric, options, CompositeOptions(layers=1, margin=Margin(0.1)))
     except InputError as error:
         pytest.skip(str(error))
-
-
-def face_counts(hexahedra):
-    """Faces as sorted corners, and in how many hexahedra each is."""
-    corners = np.sort(hexahedra[:, FACES].reshape(-1, 4), axis=1)
-    return np.unique(corners, axis=0, return_counts=True)
-
-
-def check_fills(cell):
-    """The box is filled once: exact volumes, all positive, add up, and every face is in two elements or on the box."""
-    mesh = cell.mesh
-    volumes = hexahedra_volumes(mesh.points[mesh.hexahedra])
-    assert volumes.min() > 0
-    assert volumes.sum() == pytest.approx(cell.size.prod(), rel=1e-12)
-
-    faces, times = face_counts(mesh.hexahedra)
-    assert times.max() == 2
-    outside = np.vstack(list(cell.box.values()))
-    assert set(map(tuple, faces[times == 1])) == set(map(tuple, np.sort(outside, axis=1)))
-
-
-def check_repeats(cell):
-    """Nodes of opposite faces of the box match; the box is where it is said to be."""
-    points = cell.mesh.points
-    low = [0.0, 0.0, -cell.size[2] / 2]
-    for axis, (one, other) in enumerate(zip(BOX_FACES[::2], BOX_FACES[1::2])):
-        start, end = (points[np.unique(cell.box[name])] for name in (one, other))
-        assert (start[:, axis] == low[axis]).all() and end[:, axis] == pytest.approx(low[axis] + cell.size[axis])
-        start, end = (np.delete(side, axis, axis=1) for side in (start, end))
-        start, end = (side[np.lexsort(np.round(side, 9).T)] for side in (start, end))
-        assert start == pytest.approx(end, abs=1e-12, rel=0)
 
 
 @pytest.mark.parametrize("name", SMALL)
@@ -173,6 +143,28 @@ def test_the_matrix_beside_flat_and_round_sides_is_well_shaped(name):
     cell = mesh_composite(FABRICS[name], composite_mesh_options(FABRICS[name]))
     quality = hexahedra_quality(cell.mesh.points, cell.mesh.hexahedra[cell.in_matrix])
     assert quality.scaled_jacobian.min() >= 0.3
+
+
+@pytest.mark.parametrize("seed", [44, 70, 95])
+def test_strips_beside_flat_sides_in_narrow_gaps_do_not_fold(seed):
+    """Half gaps of 0.13 to 0.35 of the thickness; strips that took 0.65 of them had -0.03 (seed 70)."""
+    family, row = DRAWS["standard"](np.random.default_rng(seed), "narrow")
+    fabric = identify(table(family, row))["narrow"]
+    cell = mesh_composite(fabric, composite_mesh_options(fabric, across=4), CompositeOptions(layers=1))
+    quality = hexahedra_quality(cell.mesh.points, cell.mesh.hexahedra[cell.in_matrix])
+    assert quality.scaled_jacobian.min() >= 0.08
+
+
+def test_a_gap_too_narrow_for_strips_beside_arcs_is_refused_with_its_numbers():
+    family, row = DRAWS["general"](np.random.default_rng(28), "narrow")
+    fabric = identify(table(family, row))["narrow"]
+    words = r"w\w+_width_mm: .* leaves a gap of .* mm between w\w+s, too narrow .* round sides, which are .* mm high"
+    with pytest.raises(InputError, match=words) as refused:
+        mesh_composite(fabric, composite_mesh_options(fabric, across=4), CompositeOptions(layers=1))
+    (problem,) = refused.value.problems
+    direction = problem.column.removesuffix("_width_mm")
+    width, spacing = fabric.directions[direction].width, fabric.crossed(direction).crossed_spacing
+    assert f"{width:.4g} leaves a gap of {spacing - width:.3g} mm" in problem.message
 
 
 def test_margin_layers_and_grading():
