@@ -18,7 +18,7 @@ TOLERANCE = 1e-7
 """Residual over load at which a column is solved; an energy is then right to its square, some 1e-10."""
 
 MOST_ITERATIONS = 5000
-_LEAST_LOAD = 1e-9  # of what the elements' own forces add up to: less is rounding, not a load
+_LEAST_LOAD = 1e-5  # of what the elements' own forces add up to: what is solved to TOLERANCE of less is rounding
 
 
 @dataclass(frozen=True, eq=False)
