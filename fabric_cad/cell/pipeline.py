@@ -133,10 +133,11 @@ def make_mesh(made: Made, options: MeshOptions, stages: Stages) -> Meshed:
 
 def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> CellReport:
     """The report of what was made. Raises :class:`BuildError` where it shows a cell that is not consistent."""
-    from ..model.plausibility import implausible
-    from .checks import check_report, doubts
-    from .figures import cell_volumes, mesh_figures, yarn_data
-    from .report import CellReport, Identification
+    with uninterrupted():
+        from ..model.plausibility import implausible
+        from .checks import check_report, doubts
+        from .figures import cell_volumes, mesh_figures, yarn_data
+        from .report import CellReport, Identification
 
     row = made.table.row(made.fabric.name)
     report = CellReport(
@@ -154,7 +155,8 @@ def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> CellRep
 
 def write_report(report: dict, folder: Path) -> None:
     """Write ``report.json``, which takes the digests of all that is beside it."""
-    from .traces import REPORT, write_traced
+    with uninterrupted():
+        from .traces import REPORT, write_traced
 
     write_traced(report, folder / REPORT)
 
@@ -188,7 +190,8 @@ def make_cell(
                 from ..decks.cell import write_deck
 
             write_deck(meshed.mesh, folder / f"{name}.inp", f"elementary cell of {name}", dialect)
-        from ..pictures import draw_cell, write_vtu
+        with uninterrupted():
+            from ..pictures import draw_cell, write_vtu
 
         with stages("write vtu"):
             write_vtu(meshed.mesh, meshed.quality, folder / f"{name}.vtu")
