@@ -83,7 +83,8 @@ def _fractions(
     row: Family, families: str | Path, fabric: SolvedFabric, cell: CompositeCell
 ) -> tuple[np.ndarray, list[str]]:
     """Fibre fraction (elements,) where it is known, and what to warn of where it cannot be."""
-    from .materials import element_fractions
+    with uninterrupted():
+        from .materials import element_fractions
 
     try:
         sections = fibre_sections(row, read_constituents(families, fabric.name))
@@ -119,16 +120,18 @@ def _write_msh(cell: CompositeCell, path: Path):
 
 
 def _write_deck(cell: CompositeCell, folder: Path, title: str, dialect: str) -> None:
-    from ..decks.composite import write_composite_deck
+    with uninterrupted():
+        from ..decks.composite import write_composite_deck
 
     write_composite_deck(cell.mesh, cell.box, folder / f"{NAME}.inp", title, dialect)
 
 
 def _write_vtu(cell: CompositeCell, figures: Figures, path: Path) -> None:
     """Write the mesh for ParaView: ``body`` (0 matrix, 1 ... yarns), fibre axis and fraction, scaled Jacobian."""
-    from ..meshing.grids import grid_of
-    from ..meshing.mesh import yarn_numbers
-    from ..pictures.vtu import write_grid
+    with uninterrupted():
+        from ..meshing.grids import grid_of
+        from ..meshing.mesh import yarn_numbers
+        from ..pictures.vtu import write_grid
 
     grid = grid_of(cell.mesh)
     grid.cell_data["body"] = yarn_numbers(cell.mesh).astype(np.int32)[cell.mesh.body]

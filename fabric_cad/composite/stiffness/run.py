@@ -117,6 +117,7 @@ def _write(computed: CompositeStiffness, folder: Path, stages: Stages) -> None:
 
         write_states(computed, folder / f"{NAME}.pvd")
     with stages("picture"):
-        from ...pictures.plots import plot_directions, save_figure
+        with uninterrupted():
+            from ...pictures.plots import plot_directions, save_figure
 
         save_figure(plot_directions(computed.effective.stiffness), folder / f"{NAME}.png", computed.model.fabric.name)
