@@ -81,7 +81,10 @@ def prepare(folder: Path) -> None:
         for quantity in ("density_per_mm", "width_mm", "crimp")
     ]
     general = [
-        f"{d}_{q}_{side}_mm" for q in ("contact", "offset") for d in ("weft", "warp") for side in ("top", "bottom")
+        f"{d}_{q}_{side}_mm"
+        for q in ("contact", "offset")
+        for d in ("weft", "warp")
+        for side in ("top", "bottom")
     ]
     rows, general_rows = [], []
     for k in range(10_000):
@@ -98,7 +101,9 @@ def prepare(folder: Path) -> None:
         general_rows.append((*rows[-1], *chords, *offsets, ("lenticular", "round")[rounded]))
     columns.append("weft_thickness_mm")
     write_table(folder / "families10000" / "twill.csv", columns, rows)
-    write_table(folder / "families10000g" / "twill.csv", [*columns, *general, "section"], general_rows)
+    write_table(
+        folder / "families10000g" / "twill.csv", [*columns, *general, "section"], general_rows
+    )
 
 
 @dataclass(frozen=True)
@@ -108,7 +113,9 @@ class Bench:
     folder: Path
     runs: int
 
-    def command(self, what: str, command: list[str], promised: str = "", floor: str = "", runs: int = 0) -> Figure:
+    def command(
+        self, what: str, command: list[str], promised: str = "", floor: str = "", runs: int = 0
+    ) -> Figure:
         """A whole process."""
         seconds, memory = measure(command, runs or self.runs)
         return Figure(what, seconds, memory, runs or self.runs, floor=floor, promised=promised)
@@ -122,11 +129,20 @@ class Bench:
         folders = ["--out", str(self.folder / "build"), "--families", str(self.folder / families)]
         return self.command(what, [*FABRIC_CAD, "solve", "-q", *folders], promised)
 
-    def cell(self, row: str, promised: str, *options: str, families: Path = ROOT / "families", runs: int = 0) -> Figure:
+    def cell(
+        self,
+        row: str,
+        promised: str,
+        *options: str,
+        families: Path = ROOT / "families",
+        runs: int = 0,
+    ) -> Figure:
         """All files of a cell, with the times of its stages."""
         folders = ["--families", str(families), "--out", str(self.folder / "build")]
         what = f"cell {' '.join([row, *options])}"
-        figure = self.command(what, [*FABRIC_CAD, "cell", row, *folders, *options], promised, IMPORTS, runs)
+        figure = self.command(
+            what, [*FABRIC_CAD, "cell", row, *folders, *options], promised, IMPORTS, runs
+        )
         report = json.loads((self.folder / "build" / row / "report.json").read_text())
         megabytes = (self.folder / "build" / row / f"{row}.step").stat().st_size / 1e6
         size = f"{report['mesh']['hexahedra']} hexahedra, STEP {megabytes:.2f} MB"
@@ -135,9 +151,13 @@ class Bench:
     def stiffness(self, row: str, promised: str, *options: str, runs: int = 0) -> Figure:
         """A composite homogenised, with the times of its stages."""
         what = f"stiffness {' '.join([row, *options])}"
-        figure = self.command(what, [*FABRIC_CAD, "stiffness", row, *self.folders, *options], promised, runs=runs)
+        figure = self.command(
+            what, [*FABRIC_CAD, "stiffness", row, *self.folders, *options], promised, runs=runs
+        )
         report = json.loads((self.folder / "build" / row / "stiffness.json").read_text())
-        size = f"{report['mesh']['hexahedra']} hexahedra, {report['solver']['iterations']} iterations"
+        size = (
+            f"{report['mesh']['hexahedra']} hexahedra, {report['solver']['iterations']} iterations"
+        )
         return Figure(**(asdict(figure) | {"size": size, "stages": report["seconds"]}))
 
     def matrix(self, row: str, promised: str) -> Figure:
@@ -160,7 +180,8 @@ class Bench:
         )
         command = [PYTHON, "-c", code, str(ROOT / "families"), row]
         seconds = [
-            float(subprocess.run(command, check=True, capture_output=True, text=True).stdout) for _ in range(self.runs)
+            float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+            for _ in range(self.runs)
         ]
         what = f"matrix of {row} beyond its yarns' mesh, processor time"
         return Figure(what, statistics.median(seconds), runs=self.runs, promised=promised)
@@ -171,20 +192,38 @@ class Bench:
         report, figures = json.loads((made / "report.json").read_text()), []
         count = str(report["mesh"]["hexahedra"])
         for stage, name, arguments in (
-            ("mesh", "gmsh alone, a block of as many hexahedra", ["block", count, str(self.folder / "block.msh")]),
-            ("write STEP", "OCCT alone", ["step", str(made / f"{row}.step"), str(self.folder / "bare.step")]),
+            (
+                "mesh",
+                "gmsh alone, a block of as many hexahedra",
+                ["block", count, str(self.folder / "block.msh")],
+            ),
+            (
+                "write STEP",
+                "OCCT alone",
+                ["step", str(made / f"{row}.step"), str(self.folder / "bare.step")],
+            ),
         ):
             floor = f"floor: {stage} of {count} hexahedra: {name}"
             figures.append(
-                Figure(floor, statistics.median(self.printed("floors.py", *arguments) for _ in range(3)), runs=3)
+                Figure(
+                    floor,
+                    statistics.median(self.printed("floors.py", *arguments) for _ in range(3)),
+                    runs=3,
+                )
             )
-            figures.append(Figure(f"{row}, {stage} of {count} hexahedra", report["seconds"][stage], floor=floor))
+            figures.append(
+                Figure(
+                    f"{row}, {stage} of {count} hexahedra", report["seconds"][stage], floor=floor
+                )
+            )
         return figures
 
     def printed(self, script: str, *arguments: str) -> float:
         """The number a script of the tests prints."""
         command = [PYTHON, str(ROOT / "tests" / script), *arguments]
-        return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1])
+        return float(
+            subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1]
+        )
 
     def identify(self, fabrics: int, promised: str) -> list[Figure]:
         """Fabrics of a study identified: the identification in one process, and the whole command."""
@@ -208,9 +247,16 @@ class Bench:
             )
             for _ in range(self.runs)
         ]
-        whole = self.command(f"study, {fabrics} fabrics, with table and picture", self.run(file), runs=1)
+        whole = self.command(
+            f"study, {fabrics} fabrics, with table and picture", self.run(file), runs=1
+        )
         return [
-            Figure(f"{fabrics} fabrics identified", statistics.median(alone), runs=self.runs, promised=promised),
+            Figure(
+                f"{fabrics} fabrics identified",
+                statistics.median(alone),
+                runs=self.runs,
+                promised=promised,
+            ),
             whole,
         ]
 
@@ -222,25 +268,33 @@ class Bench:
             (families / table.name).write_bytes(table.read_bytes())
         (families / "simulation.toml").write_text(f"[tension]\n{case}")
         folders = ["--families", str(families), "--out", str(self.folder / "build")]
-        figure = self.command(f"tension {row}, {what}", [*FABRIC_CAD, "tension", row, *folders], promised, runs=1)
+        figure = self.command(
+            f"tension {row}, {what}", [*FABRIC_CAD, "tension", row, *folders], promised, runs=1
+        )
         report = json.loads((self.folder / "build" / row / "tension.json").read_text())
         size = f"{report['mesh']['hexahedra']} hexahedra, {report['solver']['states']} states"
         memory = max(figure.megabytes, report["solver"]["peak_memory_MB"])
-        return Figure(**(asdict(figure) | {"size": size, "megabytes": memory, "stages": report["seconds"]}))
+        return Figure(
+            **(asdict(figure) | {"size": size, "megabytes": memory, "stages": report["seconds"]})
+        )
 
     def page(self) -> list[Figure]:
         """The page that draws a fabric in a browser: until it can be used, and from a slider's event to the drawing."""
         if not (shutil.which("chromium") or shutil.which("chromium-browser")):
             return []
         command = [PYTHON, str(ROOT / "tests" / "page_latency.py"), "8", "16"]
-        found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+        found = json.loads(
+            subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        )
         software = "SwiftShader" in found["renderer"]
         size = "SwiftShader (software)" if software else found["renderer"][:34]
         figures = [Figure("page, start to usable", found["usable"], promised="3 s")]
         for crossings, promised in (("8", "0.1 s"), ("16", "0.15 s")):
             what = f"page, {crossings} x {crossings}, event to draw call"
             seconds = {name: value / 1000 for name, value in found[crossings].items()}
-            figures.append(Figure(what, seconds["drawn"], size=size, promised=promised, stages=seconds))
+            figures.append(
+                Figure(what, seconds["drawn"], size=size, promised=promised, stages=seconds)
+            )
         return figures
 
     def study(self, name: str, base: str, depth: str, units: int, width: str, crimp: str) -> Path:
@@ -257,21 +311,42 @@ class Bench:
 
     def cells(self, count: int, promised: str) -> list[Figure]:
         """A study of twills 2*2 with mesh over two workers: the whole, the first and one more fabric of a worker."""
-        file = self.study("cells", "twill22", "mesh", count, "{ from = 2.1, to = 2.7 }", "{ from = 0.003, to = 0.005 }")
+        file = self.study(
+            "cells",
+            "twill22",
+            "mesh",
+            count,
+            "{ from = 2.1, to = 2.7 }",
+            "{ from = 0.003, to = 0.005 }",
+        )
         whole = self.command(f"study, {count} twill 2*2 with mesh", self.run(file), runs=1)
         with open(self.folder / "build" / "cells" / "costs.csv", newline="") as costs:
-            rows = [{name: float(cell) for name, cell in row.items()} for row in csv.DictReader(costs) if row["total"]]
+            rows = [
+                {name: float(cell) for name, cell in row.items()}
+                for row in csv.DictReader(costs)
+                if row["total"]
+            ]
         memory = max(row["process_megabytes"] for row in rows)
         first, more = [row for row in rows if row["load CadQuery"] > 0.1], []
         more = [row for row in rows if row not in first]
         stages = {
-            name: round(statistics.median(row[name] for row in more), 4) for name in more[0] if name not in _NO_STAGE
+            name: round(statistics.median(row[name] for row in more), 4)
+            for name in more[0]
+            if name not in _NO_STAGE
         }
         return [
-            Figure(f"{whole.what}, a cell", whole.seconds / count, memory, size=f"{count} cells", promised=promised),
+            Figure(
+                f"{whole.what}, a cell",
+                whole.seconds / count,
+                memory,
+                size=f"{count} cells",
+                promised=promised,
+            ),
             Figure("  the first of a worker", statistics.median(row["total"] for row in first)),
             Figure("  one more", statistics.median(row["total"] for row in more), stages=stages),
-            Figure("  one more, processor time", statistics.median(row["processor"] for row in more)),
+            Figure(
+                "  one more, processor time", statistics.median(row["processor"] for row in more)
+            ),
             Figure(whole.what, whole.seconds, memory, promised="below 1500 MB a worker"),
         ]
 
@@ -285,8 +360,15 @@ _MILLION = ("--across", "36", "--through", "8", "--gap", "44")
 FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
     lambda b: b.command("floor: python", [PYTHON, "-c", ""]),
     lambda b: b.command(IMPORTS, [PYTHON, "-c", "import cadquery, gmsh, pyvista"]),
-    lambda b: b.command("import fabric_cad", [PYTHON, "-c", "import fabric_cad"], "0.3 s", "floor: python"),
-    lambda b: b.command("list", [*FABRIC_CAD, "list", "--families", str(ROOT / "families")], "0.5 s", "floor: python"),
+    lambda b: b.command(
+        "import fabric_cad", [PYTHON, "-c", "import fabric_cad"], "0.3 s", "floor: python"
+    ),
+    lambda b: b.command(
+        "list",
+        [*FABRIC_CAD, "list", "--families", str(ROOT / "families")],
+        "0.5 s",
+        "floor: python",
+    ),
     lambda b: b.solve("solve, 10 000 rows", "families10000", "2 s"),
     lambda b: b.solve("solve, 10 000 general rows", "families10000g", "as fast"),
     lambda b: b.identify(100_000, "1 s"),
@@ -297,7 +379,9 @@ FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
     lambda b: b.cell("twill32", "60 s, 6000 MB", *_MILLION, runs=1),
     lambda b: b.floors("twill32"),
     lambda b: b.tension("plain_flat", "k = 1 to 0.4 %", _EQUAL, "10 s"),
-    lambda b: b.tension("plain_flat", "5 x 5 surface", "ratios = [1]\npoints = 4\ngrid = 5\n", "120 s, 2000 MB"),
+    lambda b: b.tension(
+        "plain_flat", "5 x 5 surface", "ratios = [1]\npoints = 4\ngrid = 5\n", "120 s, 2000 MB"
+    ),
     lambda b: b.tension("twill22", "k = 1 to 0.4 %", _EQUAL, "60 s"),
     lambda b: b.cells(200, "0.7 s"),
     lambda b: b.page(),
@@ -306,7 +390,9 @@ FIGURES: tuple[Callable[[Bench], Figure | list[Figure]], ...] = (
     lambda b: b.stiffness("twill32", "30 s"),
     lambda b: b.stiffness("plain", "300 s, 4000 MB", *_FINE, runs=1),
     lambda b: b.command(
-        "voxels twill32, 200 x 200 x 60", [*FABRIC_CAD, "voxels", "twill32", *_VOXELS, *b.folders], "1 s more"
+        "voxels twill32, 200 x 200 x 60",
+        [*FABRIC_CAD, "voxels", "twill32", *_VOXELS, *b.folders],
+        "1 s more",
     ),
 )
 """What is measured, in this order: add a line for a figure more."""
@@ -317,9 +403,13 @@ def show(figure: Figure, taken: dict[str, Figure]) -> None:
     floor = taken.get(figure.floor)
     ratio = f"{figure.seconds / floor.seconds:.2f}" if floor else ""
     memory = "" if figure.megabytes is None else f"{figure.megabytes:.0f}"
-    print(f"{figure.what:66}{figure.seconds:8.2f}{ratio:>8}{memory:>7}  {figure.size:34}{figure.promised}".rstrip())
+    print(
+        f"{figure.what:66}{figure.seconds:8.2f}{ratio:>8}{memory:>7}  {figure.size:34}{figure.promised}".rstrip()
+    )
     if figure.stages:
-        print("    " + ", ".join(f"{name} {seconds:.2f}" for name, seconds in figure.stages.items()))
+        print(
+            "    " + ", ".join(f"{name} {seconds:.2f}" for name, seconds in figure.stages.items())
+        )
     sys.stdout.flush()
 
 
@@ -332,7 +422,9 @@ def compare(paths: list[Path]) -> None:
         cells = []
         for run in (one, two):
             found = run.get(what)
-            memory = f"{found['megabytes']:.0f} MB" if found and found["megabytes"] is not None else ""
+            memory = (
+                f"{found['megabytes']:.0f} MB" if found and found["megabytes"] is not None else ""
+            )
             cells.append(f"{found['seconds']:.2f} s{memory:>9}" if found else "")
         both = what in one and what in two
         ratio = f"{two[what]['seconds'] / one[what]['seconds']:.2f}" if both else ""
@@ -340,15 +432,25 @@ def compare(paths: list[Path]) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--json", type=Path, help="default: build/bench/<time>.json")
-    parser.add_argument("--compare", nargs="*", type=Path, metavar="RUN.json", help="two runs; default: the last two")
+    parser.add_argument(
+        "--compare",
+        nargs="*",
+        type=Path,
+        metavar="RUN.json",
+        help="two runs; default: the last two",
+    )
     settings = parser.parse_args()
     if settings.compare is not None:
         runs = settings.compare or sorted(RESULTS.glob("*.json"))[-2:]
         if len(runs) != 2:
-            raise SystemExit(f"two runs are needed, {len(runs)} given or in {RESULTS.relative_to(ROOT)}")
+            raise SystemExit(
+                f"two runs are needed, {len(runs)} given or in {RESULTS.relative_to(ROOT)}"
+            )
         return compare(runs)
     taken: dict[str, Figure] = {}
     print(f"{'what':66}{'s':>8}{'/floor':>8}{'MB':>7}  {'size':34}promised")
@@ -360,7 +462,9 @@ def main() -> None:
             for each in found if isinstance(found, list) else [found]:
                 taken[each.what] = each
                 show(each, taken)
-    print(f"satin16 / satin8: {taken['cell satin16'].seconds / taken['cell satin8'].seconds:.2f} (promised 4.5)")
+    print(
+        f"satin16 / satin8: {taken['cell satin16'].seconds / taken['cell satin8'].seconds:.2f} (promised 4.5)"
+    )
     path = settings.json or RESULTS / f"{time.strftime('%Y-%m-%dT%H-%M-%S')}.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps([asdict(figure) for figure in taken.values()], indent=2) + "\n")

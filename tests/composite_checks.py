@@ -32,7 +32,9 @@ def check_repeats(cell):
     low = [0.0, 0.0, -cell.size[2] / 2]
     for axis, (one, other) in enumerate(zip(BOX_FACES[::2], BOX_FACES[1::2])):
         start, end = (points[np.unique(cell.box[name])] for name in (one, other))
-        assert (start[:, axis] == low[axis]).all() and end[:, axis] == pytest.approx(low[axis] + cell.size[axis])
+        assert (start[:, axis] == low[axis]).all() and end[:, axis] == pytest.approx(
+            low[axis] + cell.size[axis]
+        )
         start, end = (np.delete(side, axis, axis=1) for side in (start, end))
         start, end = (side[np.lexsort(np.round(side, 9).T)] for side in (start, end))
         assert start == pytest.approx(end, abs=1e-12, rel=0)

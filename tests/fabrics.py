@@ -16,7 +16,10 @@ from fabric_cad.weave.patterns import written
 def table(family: str, *rows: dict, folder: Path | None = None) -> Family:
     """A family table of the given rows (column to value), written and read."""
     columns = list(dict.fromkeys(column for row in rows for column in row))
-    lines = [",".join(columns), *(",".join(_text(row.get(column, "")) for column in columns) for row in rows)]
+    lines = [
+        ",".join(columns),
+        *(",".join(_text(row.get(column, "")) for column in columns) for row in rows),
+    ]
     with tempfile.TemporaryDirectory() as scratch:
         path = Path(folder or scratch) / f"{family}.csv"
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -57,7 +60,10 @@ def _weave(rng: np.random.Generator, family: str) -> dict:
         return {"over": int(rng.integers(1, 6)), "under": int(rng.integers(1, 6))}
     if family == "satin":
         harness = int(rng.integers(5, 13))
-        return {"harness": harness, "step": int(rng.choice([k for k in range(1, harness) if gcd(k, harness) == 1]))}
+        return {
+            "harness": harness,
+            "step": int(rng.choice([k for k in range(1, harness) if gcd(k, harness) == 1])),
+        }
     return {"pattern": written(_pattern(rng))} if family == "pattern" else {}
 
 
@@ -81,7 +87,9 @@ def random_unequal_row(rng: np.random.Generator, name: str = "unequal") -> tuple
     return random_row(rng, name, family="pattern" if rng.random() < 0.25 else "", ratio=ratio)
 
 
-def _direction(rng: np.random.Generator, direction: str, spacing: float, widths: tuple[float, float]) -> dict:
+def _direction(
+    rng: np.random.Generator, direction: str, spacing: float, widths: tuple[float, float]
+) -> dict:
     return {
         f"{direction}_density_per_mm": 1 / spacing,
         f"{direction}_width_mm": spacing * float(rng.uniform(*widths)),
@@ -97,7 +105,9 @@ def _thickness(rng: np.random.Generator, row: dict, ratio: float | None) -> dict
     total = 0.0
     for direction, crossed in (("weft", "warp"), ("warp", "weft")):
         a, c = 1 / row[f"{crossed}_density_per_mm"], row[f"{crossed}_width_mm"]
-        total += float(slope_from_crimp(row[f"{direction}_crimp"], repeat / 2 * a, c, a - c)) * (a - c / 2)
+        total += float(slope_from_crimp(row[f"{direction}_crimp"], repeat / 2 * a, c, a - c)) * (
+            a - c / 2
+        )
     if ratio is not None:
         return {"weft_thickness_mm": total * ratio / (1 + ratio)}
     kind = str(rng.choice(["weft_thickness_mm", "warp_thickness_mm", "fabric_thickness_mm"]))
@@ -113,7 +123,11 @@ def random_general_row(
     all three lateral forms (round ones with chords from 0.93, below which few arcs fit)."""
     family, row = random_row(rng, name, family=family)
     form = form or str(rng.choice(["lenticular", "flat", "round"]))
-    row = {column: value for column, value in row.items() if column not in ("section", "lateral_height_mm")}
+    row = {
+        column: value
+        for column, value in row.items()
+        if column not in ("section", "lateral_height_mm")
+    }
     row["section"] = form
     if form == "flat":
         row["lateral_height_mm"] = 0.01 * row["weft_width_mm"]
@@ -125,11 +139,15 @@ def random_general_row(
             share = float(rng.uniform(0.93, 0.99) if form == "round" else rng.uniform(0.6, 1.0))
             row[f"{direction}_contact_{side}_mm"] = share * width
             if rng.random() < 0.5:
-                row[f"{direction}_offset_{side}_mm"] = float(rng.uniform(0.0, 0.2)) * share * width / 2
+                row[f"{direction}_offset_{side}_mm"] = (
+                    float(rng.uniform(0.0, 0.2)) * share * width / 2
+                )
     return family, row
 
 
-def random_pattern_row(rng: np.random.Generator, name: str = "pattern", form: str = "") -> tuple[str, dict]:
+def random_pattern_row(
+    rng: np.random.Generator, name: str = "pattern", form: str = ""
+) -> tuple[str, dict]:
     """A general row of any weave."""
     return random_general_row(rng, name, form, "pattern")
 

@@ -15,7 +15,10 @@ def grid(counts):
     """Indices (nodes, 3) of a block's nodes, and its hexahedra."""
     index = np.stack(np.meshgrid(*(np.arange(n + 1) for n in counts), indexing="ij"), axis=-1)
     number = np.arange(index[..., 0].size).reshape(index.shape[:3])
-    corners = [number[tuple(slice(s, s + n) for s, n in zip(shift, counts))].ravel() for shift in (CORNERS + 1) // 2]
+    corners = [
+        number[tuple(slice(s, s + n) for s, n in zip(shift, counts))].ravel()
+        for shift in (CORNERS + 1) // 2
+    ]
     return index.reshape(-1, 3), np.stack(corners, axis=1)
 
 
@@ -35,8 +38,12 @@ def around_a_cylinder(radius, sides, rings):
     share = index[:, :1] / rings
     plan = (1 - share) * radius * way + share * outer + 0.5
     points = np.column_stack([plan, 0.1 * index[:, 2]])
-    _, first, number = np.unique(np.round(points, 12), axis=0, return_index=True, return_inverse=True)
-    mesh = PeriodicMesh(points[first], number.ravel()[hexahedra], np.diag([1, 1, 0.1]), np.zeros(3), EVERYWHERE)
+    _, first, number = np.unique(
+        np.round(points, 12), axis=0, return_index=True, return_inverse=True
+    )
+    mesh = PeriodicMesh(
+        points[first], number.ravel()[hexahedra], np.diag([1, 1, 0.1]), np.zeros(3), EVERYWHERE
+    )
     return on_circle(QuadraticMesh.straight(mesh), radius)
 
 
@@ -64,4 +71,6 @@ def flow_between_walls(mesh, directions, tolerance=1e-8):
     fixed = np.zeros((len(mesh.points), 3), dtype=bool)
     fixed[mesh.boundary] = True
     equations = assemble(mesh, fixed)
-    return equations, stokes_flow(equations, np.array(directions, dtype=float), mesh.mesh.volume, tolerance)
+    return equations, stokes_flow(
+        equations, np.array(directions, dtype=float), mesh.mesh.volume, tolerance
+    )

@@ -37,7 +37,12 @@ class Result:
         return f"{self.part} {self.seed}: {self.name}: {'; '.join(self.wrong) or self.ending} ({self.seconds:.2f} s)"
 
 
-_COMMANDS = {"tables": tables.trial, "toml": tomls.trial, "drafts": drafts.trial, "commands": command_lines.trial}
+_COMMANDS = {
+    "tables": tables.trial,
+    "toml": tomls.trial,
+    "drafts": drafts.trial,
+    "commands": command_lines.trial,
+}
 _RUNS: dict[str, Callable] = {"kills": kills.kill_run, "twice": twice.run_twice}
 COUNTS = {"tables": 500, "toml": 300, "drafts": 200, "commands": 75, "kills": 100, "twice": 20}
 """Trials of each part in a whole run."""
@@ -51,7 +56,9 @@ def try_one(part: str, seed: int) -> Result:
         return Result(part, seed, name, ending, tuple(wrong), time.perf_counter() - start)
     trial = _COMMANDS[part](seed)
     ended = run_trial(trial)
-    return Result(part, seed, trial.name, f"status {ended.status}", tuple(faults(trial, ended)), ended.seconds)
+    return Result(
+        part, seed, trial.name, f"status {ended.status}", tuple(faults(trial, ended)), ended.seconds
+    )
 
 
 def try_part(part: str, seeds: range, workers: int) -> list[Result]:
@@ -86,9 +93,13 @@ def _show(part: str, seed: int) -> None:
     folder = Path("build", "fuzz", f"{part}-{seed}")
     for name, content in trial.files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).mkdir(exist_ok=True) if content is None else (folder / name).write_bytes(content)
+        (folder / name).mkdir(exist_ok=True) if content is None else (folder / name).write_bytes(
+            content
+        )
     ended = run_trial(trial)
-    print(f"{trial.name}; files in {folder}\narguments {trial.arguments!r}\nstatus {ended.status}, left {ended.left}")
+    print(
+        f"{trial.name}; files in {folder}\narguments {trial.arguments!r}\nstatus {ended.status}, left {ended.left}"
+    )
     print(f"--- output\n{ascii_lines(ended.out)}\n--- errors\n{ascii_lines(ended.err)}")
     print("--- wrong:", "; ".join(faults(trial, ended)) or "nothing")
 
@@ -99,9 +110,13 @@ def ascii_lines(text: str) -> str:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--part", choices=COUNTS, action="append", help="default: all")
-    parser.add_argument("--seeds", type=seed_range, metavar="FIRST-END", help="default: those of a whole run")
+    parser.add_argument(
+        "--seeds", type=seed_range, metavar="FIRST-END", help="default: those of a whole run"
+    )
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--show", action="store_true", help="show every trial of the part in full")
     settings = parser.parse_args()

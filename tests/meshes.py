@@ -18,8 +18,12 @@ def mesh_named(points, hexahedra, body, names, surfaces):
 def box(name, place=(0.0, 0.0, 0.0), turn=0.0, parts=(8, 6, 2)):
     """A straight yarn of rectangular section along x (then turned about z by ``turn``), its middle at ``place``."""
     number = np.arange(np.prod(np.add(parts, 1))).reshape(np.add(parts, 1))
-    grid = np.stack(np.meshgrid(*(np.linspace(-0.5, 0.5, n + 1) for n in parts), indexing="ij"), axis=-1)
-    points = Rotation.from_euler("z", turn).apply(grid.reshape(-1, 3) * [LENGTH, WIDTH, HEIGHT]) + place
+    grid = np.stack(
+        np.meshgrid(*(np.linspace(-0.5, 0.5, n + 1) for n in parts), indexing="ij"), axis=-1
+    )
+    points = (
+        Rotation.from_euler("z", turn).apply(grid.reshape(-1, 3) * [LENGTH, WIDTH, HEIGHT]) + place
+    )
 
     def quads(sheet):
         corners = (sheet[:-1, :-1], sheet[1:, :-1], sheet[1:, 1:], sheet[:-1, 1:])
@@ -45,5 +49,9 @@ def together(*meshes):
         np.vstack([mesh.hexahedra + n for mesh, n in zip(meshes, first)]),
         np.repeat(np.arange(len(meshes)), [len(mesh.hexahedra) for mesh in meshes]),
         tuple(mesh.bodies[0] for mesh in meshes),
-        {name: quads + n for mesh, n in zip(meshes, first) for name, quads in mesh.surfaces.items()},
+        {
+            name: quads + n
+            for mesh, n in zip(meshes, first)
+            for name, quads in mesh.surfaces.items()
+        },
     )

@@ -48,7 +48,11 @@ def executed(path: Path, folder: Path) -> nbformat.NotebookNode:
     where = {"metadata": {"path": str(folder)}}
     with tempfile.TemporaryDirectory() as sockets:
         NotebookClient(
-            notebook, timeout=TIMEOUT, record_timing=False, resources=where, config=_private(sockets)
+            notebook,
+            timeout=TIMEOUT,
+            record_timing=False,
+            resources=where,
+            config=_private(sockets),
         ).execute()
 
     notebook.metadata = {"kernelspec": notebook.metadata["kernelspec"]}
@@ -63,7 +67,11 @@ def executed(path: Path, folder: Path) -> nbformat.NotebookNode:
 
 def _private(folder: str) -> Config:
     """Has a kernel listen at sockets in a folder of this user's own, not at ports, where a system has such."""
-    return Config({"KernelManager": {"transport": "ipc", "ip": f"{folder}/kernel"}} if os.name == "posix" else {})
+    return Config(
+        {"KernelManager": {"transport": "ipc", "ip": f"{folder}/kernel"}}
+        if os.name == "posix"
+        else {}
+    )
 
 
 def smaller(picture: str) -> str:

@@ -66,18 +66,25 @@ def measured(sizes: list[int]) -> dict:
         page = browser.new_page(viewport={"width": 1366, "height": 768})
         start = time.perf_counter()
         command = [sys.executable, "-m", "fabric_cad", "design", "--no-browser", "-q"]
-        server = subprocess.Popen(command, cwd=folder, env=os.environ, stdout=subprocess.PIPE, text=True)
+        server = subprocess.Popen(
+            command, cwd=folder, env=os.environ, stdout=subprocess.PIPE, text=True
+        )
         try:
             address = server.stdout.readline().strip()
             page.goto(address)
             _ready(page)
-            found: dict = {"usable": time.perf_counter() - start, "renderer": page.evaluate("() => fabric.renderer")}
+            found: dict = {
+                "usable": time.perf_counter() - start,
+                "renderer": page.evaluate("() => fabric.renderer"),
+            }
             for size in sizes:
                 row = "name=a&weft_density_per_mm=0.35&weft_width_mm=2.4&weft_crimp=0.004"
                 page.goto("about:blank")
                 page.goto(f"{address}#pattern?{row}&pattern={random_weave(size)}")
                 _ready(page)
-                times = zip(("drawn", "painted", "answered"), zip(*page.evaluate(_MEASURE, CHANGES)))
+                times = zip(
+                    ("drawn", "painted", "answered"), zip(*page.evaluate(_MEASURE, CHANGES))
+                )
                 found[str(size)] = {name: statistics.median(values) for name, values in times}
         finally:
             server.send_signal(signal.SIGINT)
@@ -87,7 +94,9 @@ def measured(sizes: list[int]) -> dict:
 
 
 def _ready(page) -> None:
-    page.wait_for_function("() => window.fabric && fabric.draws > 0 && window.fabric_design.cut.svg", timeout=60_000)
+    page.wait_for_function(
+        "() => window.fabric && fabric.draws > 0 && window.fabric_design.cut.svg", timeout=60_000
+    )
 
 
 if __name__ == "__main__":

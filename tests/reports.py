@@ -15,7 +15,14 @@ def small_report():
         "identified": {"weft": direction, "warp": direction},
         "measured_vs_model": [],
         "consistency": dict.fromkeys(
-            ("max_penetration_mm", "max_contact_gap_mm", "overlap_volume_mm3", "contact_area_mm2", "thickness_mm"), 0.0
+            (
+                "max_penetration_mm",
+                "max_contact_gap_mm",
+                "overlap_volume_mm3",
+                "contact_area_mm2",
+                "thickness_mm",
+            ),
+            0.0,
         ),
         "volumes": {"yarn_mm3": 1.0, "cell_mm3": 2.0, "yarn_volume_fraction": 0.5},
         "mesh": dict.fromkeys(

@@ -97,9 +97,15 @@ def _cell(seed: int, measured, reached: list[str]) -> Outcome:
     if not 0 < fraction < 1:
         raise ValueError(f"yarn volume fraction {fraction}")
     weave = report["weave"]
-    counts = f"{weave['wefts']} x {weave['warps']}" if weave["over"] is None else f"{weave['over']}*{weave['under']}"
+    counts = (
+        f"{weave['wefts']} x {weave['warps']}"
+        if weave["over"] is None
+        else f"{weave['over']}*{weave['under']}"
+    )
     what = f"{measured.family} {counts} {report['section']} {report['parameters']} parameters"
-    return Outcome(seed, "consistent", what, mesh["min_scaled_jacobian"], mesh["scaled_jacobian_edges_allow"])
+    return Outcome(
+        seed, "consistent", what, mesh["min_scaled_jacobian"], mesh["scaled_jacobian_edges_allow"]
+    )
 
 
 def _matrix(seed: int, measured, reached: list[str]) -> Outcome:
@@ -130,7 +136,9 @@ def try_fabric(seed: int, part: str) -> Outcome:
     """One random fabric through the pipeline in a process of its own."""
     context = multiprocessing.get_context("forkserver" if sys.platform != "win32" else "spawn")
     if sys.platform != "win32":
-        context.set_forkserver_preload(["fabric_cad.cad", "fabric_cad.masters.woven", "fabric_cad.pictures", "gmsh"])
+        context.set_forkserver_preload(
+            ["fabric_cad.cad", "fabric_cad.masters.woven", "fabric_cad.pictures", "gmsh"]
+        )
     receive, send = context.Pipe(duplex=False)
     process = context.Process(target=_child, args=(seed, part, send))
     process.start()
@@ -149,12 +157,19 @@ def try_fabric(seed: int, part: str) -> Outcome:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--part", choices=PARTS, action="append", help="default: all")
-    parser.add_argument("--seeds", type=seed_range, metavar="FIRST-END", help="default: 0-200, of a matrix 0-100")
+    parser.add_argument(
+        "--seeds", type=seed_range, metavar="FIRST-END", help="default: 0-200, of a matrix 0-100"
+    )
     parser.add_argument("--workers", type=int, default=2)
     settings = parser.parse_args()
-    runs = {part: _run(part, settings.seeds or SEEDS[part], settings.workers) for part in settings.part or PARTS}
+    runs = {
+        part: _run(part, settings.seeds or SEEDS[part], settings.workers)
+        for part in settings.part or PARTS
+    }
     print()
     for part, outcomes in runs.items():
         print("\n".join(summary(part, outcomes)))
@@ -183,7 +198,10 @@ def summary(part: str, outcomes: list[Outcome], shown: int = 5) -> list[str]:
     """Lines that say what became of a part, and its lowest qualities against what is wanted."""
     counts = Counter(outcome.kind for outcome in outcomes)
     meshed = [outcome for outcome in outcomes if not np.isnan(outcome.quality)]
-    lines = [f"{part}: {len(outcomes)} fabrics: " + ", ".join(f"{number} {what}" for what, number in counts.items())]
+    lines = [
+        f"{part}: {len(outcomes)} fabrics: "
+        + ", ".join(f"{number} {what}" for what, number in counts.items())
+    ]
     if part in MATRIX_DRAWS:
         lines += _matrix_summary(meshed, shown)
     else:
@@ -191,7 +209,9 @@ def summary(part: str, outcomes: list[Outcome], shown: int = 5) -> list[str]:
         poor = sum(not outcome.good_elements for outcome in meshed)
         bound = "below min(0.30, 0.9 of what the yarns' edges allow)"
         lines.append(f"  {bound}: {poor} of {len(meshed)}; the lowest against it:")
-        lines += [f"    {one.quality:.3f} of {one.wanted:.3f}  {one.seed} {one.what}" for one in lowest]
+        lines += [
+            f"    {one.quality:.3f} of {one.wanted:.3f}  {one.seed} {one.what}" for one in lowest
+        ]
     lines += [f"  {outcome}" for outcome in outcomes if not outcome.fine]
     return lines
 
@@ -202,9 +222,13 @@ def _matrix_summary(meshed: list[Outcome], shown: int) -> list[str]:
     for form in ("lenticular", "flat", "round"):
         least = [outcome.quality for outcome in meshed if outcome.what.endswith(form)]
         if least:
-            lines.append(f"  {len(least)} {form}: {min(least):.3f} at least, median {np.median(least):.3f}")
+            lines.append(
+                f"  {len(least)} {form}: {min(least):.3f} at least, median {np.median(least):.3f}"
+            )
     lowest = sorted(meshed, key=lambda outcome: outcome.quality)[:shown]
-    return lines + [f"    {outcome.quality:.3f}  {outcome.seed} {outcome.what}" for outcome in lowest]
+    return lines + [
+        f"    {outcome.quality:.3f}  {outcome.seed} {outcome.what}" for outcome in lowest
+    ]
 
 
 if __name__ == "__main__":

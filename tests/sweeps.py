@@ -27,7 +27,9 @@ def points(patch, u, v, along=0):
     at = ku[0] + np.asarray(u) * (ku[-1] - ku[0])
 
     def grid(order):
-        return BSpline(kv, BSpline(ku, homogeneous, du)(at, order).transpose(1, 0, 2), dv)(v).transpose(1, 0, 2)
+        return BSpline(kv, BSpline(ku, homogeneous, du)(at, order).transpose(1, 0, 2), dv)(
+            v
+        ).transpose(1, 0, 2)
 
     found = grid(0)
     place = found[..., :3] / found[..., 3:]
@@ -39,4 +41,6 @@ def points(patch, u, v, along=0):
 
 
 def patch_of(surface, segment, side):
-    return next(patch for patch in surface.patches if (patch.segment, patch.side) == (segment, side))
+    return next(
+        patch for patch in surface.patches if (patch.segment, patch.side) == (segment, side)
+    )

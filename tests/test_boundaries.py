@@ -34,12 +34,16 @@ def imports(path):
             yield node.module.split(".")[0]
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: str(p.relative_to(PACKAGE)))
+@pytest.mark.parametrize(
+    "path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: str(p.relative_to(PACKAGE))
+)
 def test_heavy_packages_stay_behind_their_doors(path):
     place = path.relative_to(PACKAGE).as_posix()
     for name in imports(path):
         allowed = DOORS.get(name)
-        assert allowed is None or any(place == door or place.startswith(f"{door}/") for door in allowed), name
+        assert allowed is None or any(
+            place == door or place.startswith(f"{door}/") for door in allowed
+        ), name
 
 
 @pytest.mark.parametrize(
@@ -52,7 +56,17 @@ def test_heavy_packages_stay_behind_their_doors(path):
         ),
         (
             "import fabric_cad; fabric_cad.run_study",
-            ("cadquery", "OCP", "gmsh", "scipy", "pyvista", "dask", "distributed", "pyarrow", "matplotlib"),
+            (
+                "cadquery",
+                "OCP",
+                "gmsh",
+                "scipy",
+                "pyvista",
+                "dask",
+                "distributed",
+                "pyarrow",
+                "matplotlib",
+            ),
         ),
         (
             "from fabric_cad.page.desk import Desk; from fabric_cad.page.scene import scene",
@@ -66,7 +80,9 @@ def test_heavy_packages_stay_behind_their_doors(path):
 )
 def test_what_is_loaded_when(statement, absent):
     code = f"import sys; {statement}; print([name for name in {absent!r} if name in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=PACKAGE.parent, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=PACKAGE.parent, check=True
+    )
     assert done.stdout.splitlines()[-1] == "[]"
 
 

@@ -14,7 +14,12 @@ from fabric_cad.measured.columns import MEASURED, OTHER_UNITS, TEXTS, WEAVE_COLU
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted(DOCS.glob("*.md"))]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    ROOT / "CHANGELOG.md",
+    *sorted(DOCS.glob("*.md")),
+]
 READ = {page: page.read_text(encoding="utf-8") for page in PAGES}
 EVERYTHING = "\n".join(READ.values())
 
@@ -23,11 +28,33 @@ EVERYTHING = "\n".join(READ.values())
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     trees, html = folder / "trees", folder / "html"
-    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-d", str(trees), str(DOCS)]
+    command = [
+        sys.executable,
+        "-m",
+        "sphinx",
+        "-q",
+        "-W",
+        "--keep-going",
+        "-b",
+        "html",
+        "-d",
+        str(trees),
+        str(DOCS),
+    ]
     done = subprocess.run([*command, str(html)], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    gallery = ["page", "--gallery", "--quiet", "--out", str(html), "--families", str(ROOT / "families")]
-    subprocess.run([sys.executable, "-m", "fabric_cad", *gallery], cwd=ROOT, check=True, capture_output=True)
+    gallery = [
+        "page",
+        "--gallery",
+        "--quiet",
+        "--out",
+        str(html),
+        "--families",
+        str(ROOT / "families"),
+    ]
+    subprocess.run(
+        [sys.executable, "-m", "fabric_cad", *gallery], cwd=ROOT, check=True, capture_output=True
+    )
     return html
 
 
@@ -37,7 +64,9 @@ def test_every_link_within_the_site_leads_somewhere(site):
 
 
 def test_a_broken_link_is_found(tmp_path):
-    (tmp_path / "one.html").write_text('<a href="two.html#there">a</a> <a href="two.html#not">b</a> <img src="no.png">')
+    (tmp_path / "one.html").write_text(
+        '<a href="two.html#there">a</a> <a href="two.html#not">b</a> <img src="no.png">'
+    )
     (tmp_path / "two.html").write_text('<h1 id="there">x</h1> <a href="https://example.org/">c</a>')
     assert broken_links(tmp_path) == [
         "one.html: two.html#not: no such place",
@@ -46,11 +75,17 @@ def test_a_broken_link_is_found(tmp_path):
 
 
 def test_the_reference_has_every_public_name():
-    told = re.findall(r"^\.\. auto(?:function|class|exception):: (\w+)$", READ[DOCS / "reference.md"], re.MULTILINE)
+    told = re.findall(
+        r"^\.\. auto(?:function|class|exception):: (\w+)$",
+        READ[DOCS / "reference.md"],
+        re.MULTILINE,
+    )
     assert sorted(told) == sorted(set(fabric_cad.__all__) - {"__version__"})
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if page.parent == ROOT], ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if page.parent == ROOT], ids=lambda page: page.name
+)
 def test_files_a_top_page_links_to_exist(page):
     for address in re.findall(r"\]\(([^)#:]+)\)", READ[page]):
         assert (ROOT / address).exists(), address
@@ -69,7 +104,10 @@ def test_make_targets_that_are_named_exist():
 def test_commands_and_options_that_are_named_exist():
     def manual(*command):
         return subprocess.run(
-            [sys.executable, "-m", "fabric_cad", *command, "--help"], capture_output=True, text=True, check=True
+            [sys.executable, "-m", "fabric_cad", *command, "--help"],
+            capture_output=True,
+            text=True,
+            check=True,
         ).stdout
 
     commands = set(re.findall(r"^    ([a-z]+) ", manual(), re.MULTILINE))
@@ -77,14 +115,20 @@ def test_commands_and_options_that_are_named_exist():
     assert named and named <= commands
 
     known = "".join(manual(command) for command in commands)
-    options = set(re.findall(r"`(--[a-z]+)", "".join(READ[page] for page in PAGES if page.parent == DOCS)))
+    options = set(
+        re.findall(r"`(--[a-z]+)", "".join(READ[page] for page in PAGES if page.parent == DOCS))
+    )
     assert "--through" in options and all(option in known for option in options)
 
 
 def test_every_column_is_told():
     page = READ[DOCS / "tables.md"]
     alike = re.compile("^(weft|warp)_")
-    for column in (*MEASURED, *TEXTS, *(name for names in WEAVE_COLUMNS.values() for name in names)):
+    for column in (
+        *MEASURED,
+        *TEXTS,
+        *(name for names in WEAVE_COLUMNS.values() for name in names),
+    ):
         assert alike.sub("weft_", column) in page, column
     assert {name.rpartition("_")[2] for name in OTHER_UNITS} - {"std"} == {"cm", "inch", "percent"}
 
@@ -92,7 +136,9 @@ def test_every_column_is_told():
 def test_the_readmes_row_is_a_fabric(tmp_path):
     (table,) = re.findall(r"```text\n(name,.*?)```", READ[ROOT / "README.md"], re.DOTALL)
     (tmp_path / "twill.csv").write_text(table)
-    assert identify(read_family(tmp_path / "twill.csv"))["twill32"].fabric_thickness == pytest.approx(0.7096, abs=5e-5)
+    assert identify(read_family(tmp_path / "twill.csv"))[
+        "twill32"
+    ].fabric_thickness == pytest.approx(0.7096, abs=5e-5)
 
 
 def test_names_that_examples_import_are_public():

@@ -34,7 +34,9 @@ LAYERS = (
 
 FREE = {"__init__.py", "__main__.py"}  # the facade and the start of the command see every folder
 
-MODULES = sorted(path for path in PACKAGE.rglob("*.py") if path.relative_to(PACKAGE).as_posix() not in FREE)
+MODULES = sorted(
+    path for path in PACKAGE.rglob("*.py") if path.relative_to(PACKAGE).as_posix() not in FREE
+)
 
 
 def imported(path):
@@ -53,11 +55,17 @@ def imported(path):
 def test_a_module_imports_nothing_of_a_folder_after_its_own(path):
     own = LAYERS.index(path.relative_to(PACKAGE).parts[0])
 
-    later = {parts[1] for parts in imported(path) if parts[0] == "fabric_cad" and parts[1] in LAYERS[own + 1 :]}
+    later = {
+        parts[1]
+        for parts in imported(path)
+        if parts[0] == "fabric_cad" and parts[1] in LAYERS[own + 1 :]
+    }
     assert not later
 
 
 def test_every_folder_has_its_place():
-    folders = {path.parent.relative_to(PACKAGE).parts[0] for path in MODULES if path.parent != PACKAGE}
+    folders = {
+        path.parent.relative_to(PACKAGE).parts[0] for path in MODULES if path.parent != PACKAGE
+    }
     assert folders == set(LAYERS)
     assert {path.name for path in PACKAGE.glob("*.py")} == FREE

@@ -26,7 +26,9 @@ def test_a_notebook_is_stored_with_its_outputs(path):
 
     told = "".join(map(shown, code))
     assert "picture" in told
-    assert not any(word in told for word in ("stderr: ", "seconds", "/tmp", "/home", "/root", "Users"))
+    assert not any(
+        word in told for word in ("stderr: ", "seconds", "/tmp", "/home", "/root", "Users")
+    )
     assert path.stat().st_size < 400_000
 
 

@@ -48,6 +48,7 @@ def edge_of(path: Trajectory) -> cq.Edge:
     """The trajectory as one quadratic spline along the cell, straight pieces raised to degree 2."""
     knots = [path.planes[0].place] * 3
     poles: list[tuple[float, float]] = []
+
     for piece in path.pieces:
         heights = piece.poles
         inner = piece.knots[piece.degree + 1 : -piece.degree - 1].tolist()
@@ -58,6 +59,7 @@ def edge_of(path: Trajectory) -> cq.Edge:
         along = (whole[1:-2] + whole[2:-1]) / 2  # Greville abscissae
         poles += list(zip(along.tolist(), heights.tolist()))[1 if poles else 0 :]
         knots += [*inner, piece.knots[-1], piece.knots[-1]]
+
     knots.append(knots[-1])
 
     weft = path.direction is Direction.WEFT

@@ -25,6 +25,7 @@ def _highest(faces: Sequence[Face], sign: float) -> float:
     """
     bounds = [(sign * face.corners[..., 2]).max() for face in faces]
     best, summit, start = -np.inf, faces[0], np.zeros(2)
+
     for number in np.argsort(bounds)[::-1]:
         if bounds[number] <= best:
             break
@@ -60,4 +61,5 @@ def _climbed(face: Face, start: np.ndarray, sign: float) -> float:
         method="L-BFGS-B",
         options={"ftol": 1e-15, "gtol": 1e-12},
     )
+
     return float(-climbed.fun)

@@ -89,6 +89,7 @@ class Face:
         for orders in ((1, 0), (0, 1)):
             rate = self.evaluate(u, v, orders)
             tangents.append((rate[..., :3] - points * rate[..., 3:]) / homogeneous[..., 3:])
+
         normal = np.cross(*tangents)
         with np.errstate(divide="ignore"):
             stretch = np.linalg.norm(normal, axis=-1) / np.abs(normal[..., 2])

@@ -61,6 +61,7 @@ def inspect_cell(
     faces = {name: faces_of(solid) for name, solid in solids.items()}
     hulls = {name: hull([face.rectangle for face in of_yarn]) for name, of_yarn in faces.items()}
     meetings = []
+
     for first, second in combinations(solids, 2):
         common = intersection(hulls[first], hulls[second])
         if common is not None:

@@ -117,6 +117,7 @@ def _sheets(faces: Sequence[Face], x: PointsAlong, y: PointsAlong) -> _Sheets:
     shape = len(x.points), len(y.points)
     sheets = _Sheets(np.full((2, *shape), np.nan), np.full((2, *shape), np.nan))
     filled = np.zeros(shape, dtype=int)
+
     for face in faces:
         x0, x1, y0, y1 = face.rectangle
         rows, columns = np.flatnonzero(x.within(x0, x1)), np.flatnonzero(y.within(y0, y1))

@@ -55,6 +55,7 @@ def face_of(patch: Patch, surface: Skin, lattice: Lattice) -> cq.Face:
     rows, columns = weight.shape
     poles = TColgp_Array2OfPnt(1, rows, 1, columns)
     weights = TColStd_Array2OfReal(1, rows, 1, columns)
+
     for i, (row, shares) in enumerate(zip(places.tolist(), weight.tolist()), start=1):
         for j, (place, share) in enumerate(zip(row, shares), start=1):
             poles.SetValue(i, j, gp_Pnt(*place))
@@ -68,6 +69,7 @@ def face_of(patch: Patch, surface: Skin, lattice: Lattice) -> cq.Face:
         spline = Geom_BSplineSurface(poles, weights, *knots)
     else:
         spline = Geom_BSplineSurface(poles, *knots)
+
     return cq.Face(BRepBuilderAPI_MakeFace(spline, _SEWING_TOLERANCE).Face())
 
 

@@ -41,13 +41,16 @@ def _wrong_mesh(mesh: MeshFigures) -> list[str]:
     ):
         if nodes != paired:
             wrong.append(f"only {paired} of {nodes} {name} are paired")
+
     return wrong
 
 
 def doubts(report: CellReport) -> list[str]:
     """Sentences on what a cell's report shows: fibres that do not fit their yarn, elements of low quality."""
     row, mesh = report.fabric.name, report.mesh
-    told = overfull_yarns(row, {str(d): share for d, share in report.volumes.fibre_fractions.items()})
+    told = overfull_yarns(
+        row, {str(d): share for d, share in report.volumes.fibre_fractions.items()}
+    )
 
     if mesh is not None and mesh.min_scaled_jacobian < LOW_JACOBIAN:
         allowed = f"the yarns' edges allow {mesh.scaled_jacobian_edges_allow:.2g}"

@@ -23,7 +23,10 @@ YARN_DATA = ("weft_linear_density_tex", "warp_linear_density_tex", "fibre_densit
 
 
 def yarn_data(table: Family, row: int) -> dict[str, float | None]:
-    """Linear densities and fibre density of a row, None where not given; a balanced row's warp has its weft's."""
+    """Linear densities and fibre density of a row, None where not given.
+
+    A balanced row's warp has its weft's.
+    """
     values = {name: float(table.measured[name][row]) for name in YARN_DATA}
     if table.balanced[row]:
         values["warp_linear_density_tex"] = values["weft_linear_density_tex"]
@@ -32,7 +35,10 @@ def yarn_data(table: Family, row: int) -> dict[str, float | None]:
 
 @dataclass(frozen=True)
 class Volumes:
-    """Volumes of a cell, mm3, and what its fibres weigh and fill; None where the row does not say."""
+    """Volumes of a cell, mm3, and what its fibres weigh and fill.
+
+    None where the row does not say.
+    """
 
     yarn_mm3: float
     cell_mm3: float
@@ -63,7 +69,9 @@ class Volumes:
         return known | {f"{d}_fibre_fraction": share for d, share in self.fibre_fractions.items()}
 
 
-def cell_volumes(fabric: SolvedFabric, consistency: Consistency, data: Mapping[str, float | None]) -> Volumes:
+def cell_volumes(
+    fabric: SolvedFabric, consistency: Consistency, data: Mapping[str, float | None]
+) -> Volumes:
     """The volumes of a cell's solids, with ``data`` of :func:`yarn_data`."""
     x, y = fabric.period
     given = {d: data.get(f"{d}_linear_density_tex") for d in DIRECTIONS}
@@ -72,7 +80,10 @@ def cell_volumes(fabric: SolvedFabric, consistency: Consistency, data: Mapping[s
 
     areal = None
     if len(tex) == len(DIRECTIONS):  # tex is g/km; yarns per mm times g/km is g/m2
-        areal = sum(tex[d] * (1 + fabric.directions[d].crimp) / fabric.crossed(d).crossed_spacing for d in DIRECTIONS)
+        areal = sum(
+            tex[d] * (1 + fabric.directions[d].crimp) / fabric.crossed(d).crossed_spacing
+            for d in DIRECTIONS
+        )
 
     shares: dict[Direction, float | None] = dict.fromkeys(DIRECTIONS)
     counts, extents = (fabric.weave.wefts, fabric.weave.warps), (x, y)
@@ -80,7 +91,9 @@ def cell_volumes(fabric: SolvedFabric, consistency: Consistency, data: Mapping[s
         if d in tex and fibre:
             section = tex[d] / fibre * 1e-3  # mm2 of solid fibre
             length = count * extent * (1 + fabric.directions[d].crimp)
-            alike = (v for name, v in consistency.yarn_volumes.items() if Body.named(name).direction is d)
+            alike = (
+                v for name, v in consistency.yarn_volumes.items() if Body.named(name).direction is d
+            )
             shares[d] = section * length / sum(alike)
 
     return Volumes(

@@ -28,7 +28,13 @@ def contact_pairing(mesh: Mesh) -> Pairing:
     from scipy.spatial import cKDTree
 
     weft, warp = (
-        np.concatenate([mesh.nodes_of(yarn, SurfaceKind.CONTACT) for yarn in mesh.yarns if yarn.direction is direction])
+        np.concatenate(
+            [
+                mesh.nodes_of(yarn, SurfaceKind.CONTACT)
+                for yarn in mesh.yarns
+                if yarn.direction is direction
+            ]
+        )
         for direction in DIRECTIONS
     )
 
@@ -37,6 +43,7 @@ def contact_pairing(mesh: Mesh) -> Pairing:
         tree = cKDTree(mesh.points[others])
         partners = tree.query_ball_point(mesh.points[nodes], COINCIDENT, return_length=True)
         paired += int(np.count_nonzero(partners == 1))
+
     return Pairing(len(weft) + len(warp), paired)
 
 

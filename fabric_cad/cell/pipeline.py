@@ -62,10 +62,17 @@ def find_row(folder: str | Path, name: str) -> tuple[Family, tuple[InputError, .
             others = [InputError(other.refused) for other in tables if other.refused]
             return table[name], (*unread, *others)
 
-    names = [*(row for table in tables for row in table.names), *(p.row for t in tables for p in t.refused if p.row)]
+    names = [
+        *(row for table in tables for row in table.names),
+        *(p.row for t in tables for p in t.refused if p.row),
+    ]
     message = f"no row is called {quoted(name)}{did_you_mean(name, names)} ('fabric-cad list' shows them all)"
     unnamed = [problem for table in tables for problem in table.refused if not problem.row]
-    perhaps = [*(problem for error in unread for problem in error.problems), *unnamed, *stray_tables(Path(folder))]
+    perhaps = [
+        *(problem for error in unread for problem in error.problems),
+        *unnamed,
+        *stray_tables(Path(folder)),
+    ]
     raise InputError([Problem(message, str(folder)), *perhaps])
 
 
@@ -73,7 +80,8 @@ def find_row(folder: str | Path, name: str) -> tuple[Family, tuple[InputError, .
 class Made:
     """A row's cell up to its STEP file, measured: what :func:`make_step` hands on.
 
-    ``std`` holds the standard deviations of the columns of ``table``, None where the row gives none.
+    ``std`` holds the standard deviations of the columns of ``table``, None where the row gives
+    none.
     """
 
     row: Family
@@ -101,9 +109,11 @@ def make_step(row: Family, folder: Path, stages: Stages) -> Made:
         std = propagate(row, table).row(0) if row.scattered[0] else None
         table.write(folder / "solved.csv")
         fabric = read_solved(folder / "solved.csv")
+
     with stages("load CadQuery"), uninterrupted():
         from ..cad import inspect_cell, read_step
         from ..masters import build_cell
+
     step = folder / f"{name}.step"
     with stages("solids"):
         cell = build_cell(fabric)
@@ -111,6 +121,7 @@ def make_step(row: Family, folder: Path, stages: Stages) -> Made:
         cell.write_step(step)
     with stages("inspect STEP"):
         consistency = inspect_cell(read_step(step), contact_patches(fabric))
+
     return Made(row, table, std, fabric, step, consistency)
 
 
@@ -150,6 +161,7 @@ def checked_report(made: Made, meshed: Meshed | None, stages: Stages) -> CellRep
     )
     check_report(report)
     warnings = [*map(str, implausible(made.row, made.table.columns)), *doubts(report)]
+
     return replace(report, warnings=tuple(warnings))
 
 
@@ -182,6 +194,7 @@ def make_cell(
     (name,) = row.names
     options = mesh_options(identify(row)[name], **(mesh or {}))
     report: dict = {}
+
     with staged(Path(out) / name, partial(write_report, report)) as folder:
         made = make_step(row, folder, stages)
         meshed = make_mesh(made, options, stages)
@@ -190,6 +203,7 @@ def make_cell(
                 from ..decks.cell import write_deck
 
             write_deck(meshed.mesh, folder / f"{name}.inp", f"elementary cell of {name}", dialect)
+
         with uninterrupted():
             from ..pictures import draw_cell, write_vtu
 
@@ -198,4 +212,5 @@ def make_cell(
         with stages("picture"):
             draw_cell(meshed.mesh, folder / f"{name}.png", name)
         report |= checked_report(made, meshed, stages).content() | trace(row, options)
+
     return report

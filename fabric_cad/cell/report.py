@@ -38,7 +38,8 @@ class Identification:
     """How a row was identified: by which columns, how many parameters, and what else they allow.
 
     ``std`` is a fabric whose numbers are standard deviations, None where the row gives none;
-    ``other_thicknesses`` those of weft and warp (mm) in a second solution, None where there is none.
+    ``other_thicknesses`` those of weft and warp (mm) in a second solution, None where there is
+    none.
     """
 
     parameters: int
@@ -66,7 +67,10 @@ class Identification:
 
 @dataclass(frozen=True, eq=False)
 class CellReport:
-    """All that was measured on a cell's files; ``mesh`` is None where none was made, ``seconds`` are per stage."""
+    """All that was measured on a cell's files.
+
+    ``mesh`` is None where none was made, ``seconds`` are per stage.
+    """
 
     fabric: SolvedFabric
     identification: Identification
@@ -87,7 +91,9 @@ class CellReport:
             "float_gap": fabric.float_gap,
             "parameters": self.identification.parameters,
             "identified": self._identified(),
-            "measured_vs_model": [compared.content() for compared in self.identification.comparisons],
+            "measured_vs_model": [
+                compared.content() for compared in self.identification.comparisons
+            ],
             "consistency": {
                 "max_penetration_mm": found.max_penetration,
                 "max_contact_gap_mm": found.max_contact_gap,
@@ -104,7 +110,9 @@ class CellReport:
     def _identified(self) -> dict:
         """What was identified of both directions, and of the fabric."""
         how, std = self.identification, self.identification.std
-        identified: dict = {str(name): _parameters(name, solved) for name, solved in self.fabric.directions.items()}
+        identified: dict = {
+            str(name): _parameters(name, solved) for name, solved in self.fabric.directions.items()
+        }
         identified["fabric_thickness_mm"] = self.fabric.fabric_thickness
 
         if std is not None:
@@ -116,6 +124,7 @@ class CellReport:
         if how.other_thicknesses is not None:
             weft, warp = how.other_thicknesses
             identified["other_solution"] = {"weft_thickness_mm": weft, "warp_thickness_mm": warp}
+
         return identified
 
 

@@ -44,6 +44,7 @@ def _fabric(report: Mapping) -> list[str]:
     for label, key, factor in _QUANTITIES:
         weft, warp = (f"{factor * identified[name][key]:.4g}" for name in ("weft", "warp"))
         lines.append(f"  {label:22}{weft:>12}{warp:>12}")
+
     return lines
 
 

@@ -44,7 +44,13 @@ def measured_cells(row: Family) -> dict[str, object]:
     }
     numbers = {column: float(values[0]) for column, values in row.measured.items()}
     numbers |= {f"{column}_std": float(values[0]) for column, values in row.scatter.items()}
-    texts = {"section": row.sections[0], "thicker": row.thicker[0], "source": row.sources[0], "notes": row.notes[0]}
+    texts = {
+        "section": row.sections[0],
+        "thicker": row.thicker[0],
+        "source": row.sources[0],
+        "notes": row.notes[0],
+    }
+
     return {
         "name": row.names[0],
         **({} if row.lines[0] is None else {"table": f"{row.place.path}:{row.lines[0]}"}),
@@ -55,7 +61,10 @@ def measured_cells(row: Family) -> dict[str, object]:
 
 
 def file_digests(folder: Path, without: str) -> dict[str, str]:
-    """Name to SHA-256 of every file of a folder but one; of files that cannot be read there is none."""
+    """Name to SHA-256 of every file of a folder but one.
+
+    Of files that cannot be read there is none.
+    """
     digests = {}
     for path in sorted(folder.iterdir()):
         if path.name == without or not path.is_file():

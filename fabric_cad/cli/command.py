@@ -35,6 +35,7 @@ def _main(arguments: Sequence[str] | None) -> int:
             if lost := terminal.finish():
                 complain(lost)
                 raise SystemExit(1) from end
+
             raise
         except BrokenPipeError:
             status = 1

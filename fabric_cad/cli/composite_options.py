@@ -26,7 +26,11 @@ class BoxOptions(MeshedRowOptions):
         """What is said of the matrix. Raises :class:`InputError` for what cannot be."""
         from ..composite.options import CompositeOptions, Margin
 
-        asked = {name: value for name in ("layers", "grading") if (value := getattr(self, name)) is not None}
+        asked = {
+            name: value
+            for name in ("layers", "grading")
+            if (value := getattr(self, name)) is not None
+        }
         margin = Margin() if self.margin is None else Margin.read(self.margin)
         return CompositeOptions(margin=margin, **asked)
 

@@ -126,4 +126,5 @@ def _common_options() -> _Parser:
         help="no progress, notes and summaries of what files hold: only what list, validate and "
         "wif exist to print, warnings and errors",
     )
+
     return common

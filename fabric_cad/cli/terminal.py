@@ -21,9 +21,11 @@ def prepare() -> None:
     if sys.stdout is None:
         _take_descriptor(1, os.O_RDONLY)
         sys.stdout = io.TextIOWrapper(io.FileIO(1, "w", closefd=False), encoding="utf-8")
+
     if sys.stderr is None:
         _take_descriptor(2, os.O_WRONLY)
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (lives as long as the process)
+
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

@@ -20,13 +20,15 @@ MATRIX = Body(BodyKind.MATRIX)
 class CompositeCell:
     """A composite cell in its box 0 <= x <= X, 0 <= y <= Y, -H/2 <= z <= H/2; lengths mm.
 
-    ``mesh`` has the yarns in their order as bodies, and the matrix at the end. The surfaces of a yarn are its
-    interface with the matrix (``weft_1_matrix``), what touches other yarns (``weft_1_contact``) and its ends.
-    Nodes match across the box: the image of a node on x = 0 has exactly its y and z, and x = X; so in y and z.
+    ``mesh`` has the yarns in their order as bodies, and the matrix at the end. The surfaces of a
+    yarn are its interface with the matrix (``weft_1_matrix``), what touches other yarns
+    (``weft_1_contact``) and its ends. Nodes match across the box: the image of a node on x = 0 has
+    exactly its y and z, and x = X; so in y and z.
 
-    ``box`` maps :data:`BOX_FACES` to quadrilaterals (quads, 4) of the mesh; ``size`` (3,) is (X, Y, H),
-    ``margin`` the clearance above and below the yarns, ``shift`` how far the yarns were moved up to stand at
-    mid-height, ``closed_wedge`` the largest distance between two yarns that was closed (both moved to the middle).
+    ``box`` maps :data:`BOX_FACES` to quadrilaterals (quads, 4) of the mesh; ``size`` (3,) is (X, Y,
+    H), ``margin`` the clearance above and below the yarns, ``shift`` how far the yarns were moved
+    up to stand at mid-height, ``closed_wedge`` the largest distance between two yarns that was
+    closed (both moved to the middle).
     """
 
     mesh: Mesh

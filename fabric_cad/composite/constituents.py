@@ -31,7 +31,12 @@ _ALONG_ACROSS: dict[str, Check] = {
     "conductivity_1_W_per_mK": POSITIVE,
     "conductivity_2_W_per_mK": POSITIVE,
 }
-_MODULI: dict[str, Check] = {"E1_MPa": POSITIVE, "E2_MPa": POSITIVE, "G12_MPa": POSITIVE, "nu12": POISSON}
+_MODULI: dict[str, Check] = {
+    "E1_MPa": POSITIVE,
+    "E2_MPa": POSITIVE,
+    "G12_MPa": POSITIVE,
+    "nu12": POISSON,
+}
 _CHECKS: dict[str, dict[str, Check]] = {
     "fibre": {**_MODULI, "G23_MPa": POSITIVE, **_COMMON, **_ALONG_ACROSS},
     "matrix": {
@@ -56,7 +61,8 @@ _NEEDED = {"fibre": ("E1_MPa", "E2_MPa", "G12_MPa", "G23_MPa", "nu12"), "matrix"
 def read_constituents(families: str | Path, row: str) -> Constituents:
     """The constituents of one row, from ``composite.toml`` in the folder of the tables, else the shipped one.
 
-    Raises :class:`InputError` naming file, line, key, value and bound of all that is wrong or missing.
+    Raises :class:`InputError` naming file, line, key, value and bound of all that is wrong or
+    missing.
     """
     path = Path(families) / FILE
     file = SettingsFile(path if path.exists() else shipped_families() / FILE, _CHECKS)
@@ -84,16 +90,23 @@ def _missing(file: SettingsFile, tables: dict[str, dict], row: str) -> Iterator[
     """What a composite cannot be computed without."""
     own = [key for key in ELASTIC if key in tables.get("yarn", {})]
     lacking = [key for key in ELASTIC if own and key not in own]
+
     for key in lacking:
-        yield file.problem("yarn", key, f"is missing: the yarn's own constants are {', '.join(ELASTIC)}", row)
+        yield file.problem(
+            "yarn", key, f"is missing: the yarn's own constants are {', '.join(ELASTIC)}", row
+        )
 
     for table, keys in _NEEDED.items():
         if table in tables:
             yield from (
-                file.problem(table, key, f"is missing in [{table}]", row) for key in keys if key not in tables[table]
+                file.problem(table, key, f"is missing in [{table}]", row)
+                for key in keys
+                if key not in tables[table]
             )
         elif table == "matrix":
-            yield file.problem("", table, "there is no table [matrix]: what fills the space between the yarns", row)
+            yield file.problem(
+                "", table, "there is no table [matrix]: what fills the space between the yarns", row
+            )
         elif not own:
             message = "there is no table [fibre], nor are the yarn's own constants given in [yarn]"
             yield file.problem("", table, message, row)
@@ -103,7 +116,9 @@ def _unstable(file: SettingsFile, constituents: Constituents, row: str) -> Itera
     """Materials that are not positive definite."""
     fibre, yarn = constituents.fibre, constituents.yarn
     if fibre and not fibre.law.nu23 < 1:
-        bound = f"is not above E2_MPa / 4 = {fibre.E2_MPa / 4:g}, as E2 / (2 G23) - 1 = nu23 < 1 asks"
+        bound = (
+            f"is not above E2_MPa / 4 = {fibre.E2_MPa / 4:g}, as E2 / (2 G23) - 1 = nu23 < 1 asks"
+        )
         yield file.problem("fibre", "G23_MPa", f"{fibre.G23_MPa:g} {bound}", row)
     elif fibre and not fibre.law.margin > 0:
         yield file.problem("fibre", "nu12", _too_far(fibre.law), row)

@@ -21,8 +21,8 @@ MOST_CLOSED = 0.02
 class Closed:
     """What closing the crossings does.
 
-    ``stands_for`` (nodes,) is the node that every node has become, ``crossing`` (nodes,) the number of the
-    crossing whose contact it lies in, -1 in none; ``wedge`` the largest distance closed, mm.
+    ``stands_for`` (nodes,) is the node that every node has become, ``crossing`` (nodes,) the number
+    of the crossing whose contact it lies in, -1 in none; ``wedge`` the largest distance closed, mm.
     """
 
     stands_for: np.ndarray
@@ -31,18 +31,26 @@ class Closed:
 
     def renumber(self, strip: Strip) -> Strip:
         """A yarn's skin in the nodes that there are now."""
-        faces = {name: self.stands_for[getattr(strip, name)] for name in ("bottom", "top", "left", "right")}
+        faces = {
+            name: self.stands_for[getattr(strip, name)]
+            for name in ("bottom", "top", "left", "right")
+        }
         return replace(strip, **faces)
 
 
 def close_crossings(
-    points: np.ndarray, strips: Sequence[Strip], fabric: SolvedFabric, axes: tuple[Lines, Lines], bonded: bool
+    points: np.ndarray,
+    strips: Sequence[Strip],
+    fabric: SolvedFabric,
+    axes: tuple[Lines, Lines],
+    bonded: bool,
 ) -> Closed:
     """Move facing nodes of crossing yarns to their middle, in place; let them be one, if ``bonded``, or on the rim.
 
-    Contact is exact on the chords; where a chord is below the width a wedge opens beyond it, of micrometres,
-    which hexahedra cannot fill: a patch of them would have a corner of 180 degrees. Raises
-    :class:`InputError` where one is above :data:`MOST_CLOSED` of the thinner yarn's thickness.
+    Contact is exact on the chords; where a chord is below the width a wedge opens beyond it, of
+    micrometres, which hexahedra cannot fill: a patch of them would have a corner of 180 degrees.
+    Raises :class:`InputError` where one is above :data:`MOST_CLOSED` of the thinner yarn's
+    thickness.
     """
     x, y = axes
     stands_for, number = np.arange(len(points)), np.full(len(points), -1)
@@ -63,7 +71,9 @@ def close_crossings(
             points[ours] = points[theirs] = (points[ours] + points[theirs]) / 2
             number[ours] = number[theirs] = i * len(warps) + j
             stands_for[ours[rim]] = theirs[rim]
+
     _check(wedge, fabric)
+
     return Closed(stands_for, number, wedge)
 
 

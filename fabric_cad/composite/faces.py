@@ -14,7 +14,10 @@ def box_faces(points: np.ndarray, hexahedra: np.ndarray, size: np.ndarray) -> di
     """Quadrilaterals (quads, 4) on the six faces of the box, by name; ``size`` (3,) in mm."""
     low, high = np.array([0.0, 0.0, -size[2] / 2]), np.array([size[0], size[1], size[2] / 2])
     planes = [(axis, ends[axis]) for axis in range(3) for ends in (low, high)]
-    return {name: _faces_on(points[:, axis] == place, hexahedra) for name, (axis, place) in zip(BOX_FACES, planes)}
+    return {
+        name: _faces_on(points[:, axis] == place, hexahedra)
+        for name, (axis, place) in zip(BOX_FACES, planes)
+    }
 
 
 def _faces_on(lies: np.ndarray, hexahedra: np.ndarray) -> np.ndarray:
@@ -27,8 +30,8 @@ def _faces_on(lies: np.ndarray, hexahedra: np.ndarray) -> np.ndarray:
 def yarn_faces(yarns: Mesh, crossing: np.ndarray) -> dict[Surface, np.ndarray]:
     """The yarns' surfaces in a composite, in the nodes of their own mesh.
 
-    ``crossing`` (nodes,) is the crossing in whose contact a node lies, -1 in none. What of a yarn's skin lies
-    in a contact touches another yarn, all else the matrix.
+    ``crossing`` (nodes,) is the crossing in whose contact a node lies, -1 in none. What of a yarn's
+    skin lies in a contact touches another yarn, all else the matrix.
     """
     surfaces = {}
     for yarn in yarns.yarns:
@@ -39,4 +42,5 @@ def yarn_faces(yarns: Mesh, crossing: np.ndarray) -> dict[Surface, np.ndarray]:
         surfaces[Surface(yarn, SurfaceKind.CONTACT)] = skin[touching]
         for end in (SurfaceKind.START, SurfaceKind.END):
             surfaces[Surface(yarn, end)] = yarns.quads_of(yarn, end)
+
     return surfaces

@@ -1,9 +1,9 @@
 """How much of a yarn is fibre, along it: from its linear density and the area of its section, or as given.
 
-A yarn holds the fibre section A_f = tex / (1000 density) mm2 (density in g/cm3) all along, or that times the share
-of its weight that is fibre. A plane across
-the fabric cuts it in the area A, at the slope theta of its trajectory; normal to the fibres that is A cos(theta),
-of which the fibres take V = A_f / (A cos(theta)).
+A yarn holds the fibre section A_f = tex / (1000 density) mm2 (density in g/cm3) all along, or that
+times the share of its weight that is fibre. A plane across the fabric cuts it in the area A, at the
+slope theta of its trajectory; normal to the fibres that is A cos(theta), of which the fibres take V
+= A_f / (A cos(theta)).
 """
 
 from __future__ import annotations
@@ -45,19 +45,28 @@ def fibre_sections(row: Family, constituents: Constituents) -> FibreSections:
     given, the fibre's density is not, and nothing else says how much fibre there is.
     """
     (name,) = row.names
-    given, table = constituents.yarn.fibre_fraction, Problem("", row.place.path, row.lines[0], row=name)
+    given, table = (
+        constituents.yarn.fibre_fraction,
+        Problem("", row.place.path, row.lines[0], row=name),
+    )
     if constituents.yarn.own_fraction:
         return FibreSections({}, given, {})
 
     data = yarn_data(row, 0)
     known = {d: tex for d in DIRECTIONS if (tex := data[f"{d}_linear_density_tex"]) is not None}
-    density = data["fibre_density_g_cm3"] or (constituents.fibre.density_g_cm3 if constituents.fibre else None)
+    density = data["fibre_density_g_cm3"] or (
+        constituents.fibre.density_g_cm3 if constituents.fibre else None
+    )
     if known and density is None and given is None and constituents.yarn.law is None:
         message = "is missing: the fibre fraction is to follow from the linear density of the yarns"
         raise InputError(Problem(message, constituents.path, None, "density_g_cm3", name))
 
     share = constituents.yarn.fibre_weight_fraction
-    areas = {direction: share * value / (1000 * density) for direction, value in known.items()} if density else {}
+    areas = (
+        {direction: share * value / (1000 * density) for direction, value in known.items()}
+        if density
+        else {}
+    )
     if len(areas) < 2 and given is None and constituents.yarn.law is None:
         message = "is missing, and the row gives no linear density of both directions from which it would follow"
         raise InputError(Problem(message, constituents.path, None, "fibre_fraction", name))
@@ -65,7 +74,9 @@ def fibre_sections(row: Family, constituents: Constituents) -> FibreSections:
     return FibreSections(areas, given, {direction: table for direction in areas})
 
 
-def fibre_fractions(swept: SweptYarn, sections: FibreSections, places: np.ndarray) -> np.ndarray | None:
+def fibre_fractions(
+    swept: SweptYarn, sections: FibreSections, places: np.ndarray
+) -> np.ndarray | None:
     """Fibre volume fraction (places,) of a yarn at ``places`` (mm along it); None where it is not known.
 
     Raises :class:`InputError` where it is above that of round fibres that touch anywhere along the
@@ -80,8 +91,12 @@ def fibre_fractions(swept: SweptYarn, sections: FibreSections, places: np.ndarra
 
 
 def _fractions(swept: SweptYarn, area: float, places: np.ndarray) -> np.ndarray:
-    distinct, number = np.unique(np.round(places, 9), return_inverse=True)  # a mesh's elements stand in rows
-    return (area / section_areas(swept, distinct) * np.sqrt(1 + slopes(swept, distinct) ** 2))[number]
+    distinct, number = np.unique(
+        np.round(places, 9), return_inverse=True
+    )  # a mesh's elements stand in rows
+    return (area / section_areas(swept, distinct) * np.sqrt(1 + slopes(swept, distinct) ** 2))[
+        number
+    ]
 
 
 def _refuse_too_dense(swept: SweptYarn, area: float, table: Problem) -> None:

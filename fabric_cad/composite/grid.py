@@ -6,8 +6,8 @@ Along x, warp by warp (along y, weft by weft)::
        |---|---|---+---+===+===+===+===+---+---|---|---|---|---+---+===
         half a gap  side  the yarn's columns  side  a gap
 
-``side`` are the lines over the arcs of a round section; other sections have none. Lines are counted on a
-torus: line 0 is the cell's side x = 0, and x = X as well.
+``side`` are the lines over the arcs of a round section; other sections have none. Lines are counted
+on a torus: line 0 is the cell's side x = 0, and x = X as well.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from ..support.errors import InputError, Problem
 class Lines:
     """The lines across one axis: their ``places`` (lines + 1,), mm, and what lies between them.
 
-    ``yarns`` yarns stand side by side, each with ``columns`` columns of its own, ``side`` lines of its
-    lateral zone on either side, and ``gap`` from there to the next yarn's.
+    ``yarns`` yarns stand side by side, each with ``columns`` columns of its own, ``side`` lines of
+    its lateral zone on either side, and ``gap`` from there to the next yarn's.
     """
 
     places: np.ndarray

@@ -51,11 +51,15 @@ def element_materials(mesh: Mesh, fractions: np.ndarray, constituents: Constitue
     if properties.expansion and matrix.expansion_per_K is not None:
         expansion = np.empty((len(yarn), 6))
         expansion[yarn] = expansion_strain(*properties.expansion, axes[yarn])
-        expansion[~yarn] = expansion_strain(matrix.expansion_per_K, matrix.expansion_per_K, np.eye(3)[:1])
+        expansion[~yarn] = expansion_strain(
+            matrix.expansion_per_K, matrix.expansion_per_K, np.eye(3)[:1]
+        )
+
     if properties.conductivity and matrix.conductivity_W_per_mK is not None:
         conductivity = np.empty((len(yarn), 3, 3))
         conductivity[yarn] = second_order(*properties.conductivity, axes[yarn])
         conductivity[~yarn] = matrix.conductivity_W_per_mK * np.eye(3)
+
     if properties.density is not None and matrix.density_g_cm3 is not None:
         density = np.full(len(yarn), matrix.density_g_cm3)
         density[yarn] = properties.density

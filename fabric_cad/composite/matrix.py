@@ -1,9 +1,10 @@
 """The matrix of a composite cell: hexahedra only, between the yarns' own.
 
-In plan every yarn is a straight strip and patches of contact are rectangles, so that the whole cell has one
-:mod:`grid <fabric_cad.composite.grid>` in plan. Over every node of it stands one vertical line; between the
-lowest and the highest skin on it are yarns (and :mod:`strips of resin <fabric_cad.composite.resin>`), above
-and below :mod:`layers <fabric_cad.composite.sheets>` of matrix to the box.
+In plan every yarn is a straight strip and patches of contact are rectangles, so that the whole cell
+has one :mod:`grid <fabric_cad.composite.grid>` in plan. Over every node of it stands one vertical
+line; between the lowest and the highest skin on it are yarns (and :mod:`strips of resin
+<fabric_cad.composite.resin>`), above and below :mod:`layers <fabric_cad.composite.sheets>` of
+matrix to the box.
 """
 
 from __future__ import annotations
@@ -37,12 +38,16 @@ from .spacing import gap_shares
 from .yarns import Strip, of_direction, strips_of
 
 
-def mesh_composite(fabric: SolvedFabric, mesh: MeshOptions, options: CompositeOptions = USUAL) -> CompositeCell:
+def mesh_composite(
+    fabric: SolvedFabric, mesh: MeshOptions, options: CompositeOptions = USUAL
+) -> CompositeCell:
     """The composite cell of a fabric, in closed form: neither CAD nor gmsh is needed.
 
     Raises :class:`InputError` where the options do not fit the fabric.
     """
-    plans = plan_yarns(fabric, yarns_of(fabric.weave.interlacement()), mesh, gap_shares(fabric, mesh))
+    plans = plan_yarns(
+        fabric, yarns_of(fabric.weave.interlacement()), mesh, gap_shares(fabric, mesh)
+    )
     return composite_cell(closed_mesh(fabric, plans), fabric, plans, options)
 
 
@@ -51,8 +56,9 @@ def composite_cell(
 ) -> CompositeCell:
     """The composite cell around the mesh of a fabric's yarns, which was made by ``plans``.
 
-    The yarns' hexahedra stay as they are, but for nodes of wedges that are closed (``closed_wedge``). Raises
-    :class:`InputError` where the options do not fit the fabric, :class:`BuildError` where mesh and plans do not.
+    The yarns' hexahedra stay as they are, but for nodes of wedges that are closed
+    (``closed_wedge``). Raises :class:`InputError` where the options do not fit the fabric,
+    :class:`BuildError` where mesh and plans do not.
     """
     margin = options.margin.length(fabric.fabric_thickness)
     strips = strips_of(yarns, fabric, plans)
@@ -68,7 +74,9 @@ def composite_cell(
     matrix = np.concatenate([*layers, *(resin.hexahedra for resin in resins)])
     hexahedra = np.concatenate([closed.stands_for[yarns.hexahedra], matrix])
     body = np.concatenate([yarns.body, np.full(len(matrix), len(yarns.bodies))])
-    surfaces = {name: closed.stands_for[quads] for name, quads in yarn_faces(yarns, closed.crossing).items()}
+    surfaces = {
+        name: closed.stands_for[quads] for name, quads in yarn_faces(yarns, closed.crossing).items()
+    }
 
     size = np.array([*fabric.period, 2 * half])
     mesh = _compressed(Mesh(nodes.points, hexahedra, body, (*yarns.bodies, MATRIX), surfaces))
@@ -89,12 +97,17 @@ def _lines(plans: Sequence[Plan], strips: Sequence[Strip]) -> tuple[Lines, Lines
     lines = []
     for direction in DIRECTIONS:
         others = of_direction(strips, direction.other)
-        lines.append(lines_across(direction.axis, plans, others[0].bottom.shape[1] - 1, len(others), gap))
+        lines.append(
+            lines_across(direction.axis, plans, others[0].bottom.shape[1] - 1, len(others), gap)
+        )
     return lines[0], lines[1]
 
 
 def _placed(yarns: Mesh, fabric: SolvedFabric, plans: Sequence[Plan]) -> tuple[np.ndarray, float]:
-    """The yarns' nodes in woven coordinates, centred, their ends exactly on the box; and how far they were moved up."""
+    """The yarns' nodes in woven coordinates, centred, their ends exactly on the box.
+
+    And how far they were moved up.
+    """
     points = fabric.lattice.to_woven(yarns.points).copy()
     for plan in plans:
         axis = plan.along_axis
@@ -113,7 +126,11 @@ def centring(fabric: SolvedFabric) -> float:
 
 
 def _fill(
-    nodes: Nodes, strips: Sequence[Strip], axes: tuple[Lines, Lines], half: float, shares: np.ndarray
+    nodes: Nodes,
+    strips: Sequence[Strip],
+    axes: tuple[Lines, Lines],
+    half: float,
+    shares: np.ndarray,
 ) -> tuple[list[np.ndarray], list[MeshedResin]]:
     """The matrix's hexahedra (elements, 8), whose nodes are added; the box reaches ``half`` (mm) up and down.
 
@@ -136,6 +153,7 @@ def _fill(
     for resin, section in zip(resins, sections):
         after = images[resin.direction.axis][section[:1]]
         meshed.append(MeshedResin(resin, resin_hexahedra(resin, np.vstack([section, after]))))
+
     return layers, meshed
 
 
@@ -169,7 +187,9 @@ def _unrolled(numbers: np.ndarray, images: Sequence[np.ndarray]) -> np.ndarray:
 def _columns(numbers: np.ndarray) -> np.ndarray:
     """Hexahedra (elements, 8) of a block of nodes (lines of x, lines of y, levels), upwards."""
     corners = (numbers[:-1, :-1], numbers[1:, :-1], numbers[1:, 1:], numbers[:-1, 1:])
-    levels = [corner[..., :-1].ravel() for corner in corners] + [corner[..., 1:].ravel() for corner in corners]
+    levels = [corner[..., :-1].ravel() for corner in corners] + [
+        corner[..., 1:].ravel() for corner in corners
+    ]
     return np.stack(levels, axis=1)
 
 
@@ -183,5 +203,7 @@ def _compressed(mesh: Mesh) -> Mesh:
         hexahedra=read_only(number[mesh.hexahedra]),
         body=read_only(mesh.body),
         bodies=mesh.bodies,
-        surfaces=MappingProxyType({name: read_only(number[quads]) for name, quads in mesh.surfaces.items()}),
+        surfaces=MappingProxyType(
+            {name: read_only(number[quads]) for name, quads in mesh.surfaces.items()}
+        ),
     )

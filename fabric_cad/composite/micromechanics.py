@@ -1,9 +1,10 @@
 """Properties of a yarn from those of fibre and matrix, for any number of fibre volume fractions V at once.
 
-Elastic constants and conductivity across: C. C. Chamis, *Simplified composite micromechanics equations
-for hygral, thermal and mechanical properties*, SAMPE Quarterly 15 (1984) 14-23; expansion: R. A. Schapery,
-*Thermal expansion coefficients of composite materials based on energy principles*, Journal of Composite
-Materials 2 (1968) 380-404, with the fibre's own two coefficients.
+Elastic constants and conductivity across: C. C. Chamis, *Simplified composite micromechanics
+equations for hygral, thermal and mechanical properties*, SAMPE Quarterly 15 (1984) 14-23;
+expansion: R. A. Schapery,
+*Thermal expansion coefficients of composite materials based on energy principles*, Journal of
+Composite Materials 2 (1968) 380-404, with the fibre's own two coefficients.
 """
 
 from __future__ import annotations
@@ -52,6 +53,7 @@ def yarn_properties(constituents: Constituents, fraction: np.ndarray | None) -> 
     if law is None:
         law = elastic(fibre, matrix, fraction)
         expansion = expansion or thermal_expansion(fibre, matrix, fraction)
+
     return YarnProperties(
         law,
         mixed(fibre.density_g_cm3, matrix.density_g_cm3, fraction) if density is None else density,
@@ -75,25 +77,44 @@ def elastic(fibre: Fibre, matrix: Matrix, fraction: Numbers) -> TransverselyIsot
 
 
 def thermal_expansion(fibre: Fibre, matrix: Matrix, fraction: Numbers) -> Pair | None:
-    """Expansion along and across a yarn, 1/K (Schapery 1968); None where a constituent's is not known."""
-    first, second, matrix_own = fibre.expansion_1_per_K, fibre.expansion_2_per_K, matrix.expansion_per_K
+    """Expansion along and across a yarn, 1/K (Schapery 1968).
+
+    None where a constituent's is not known.
+    """
+    first, second, matrix_own = (
+        fibre.expansion_1_per_K,
+        fibre.expansion_2_per_K,
+        matrix.expansion_per_K,
+    )
     if first is None or second is None or matrix_own is None:
         return None
 
     law = elastic(fibre, matrix, fraction)
-    along = (fraction * fibre.E1_MPa * first + (1 - fraction) * matrix.E_MPa * matrix_own) / law.E1_MPa
+    along = (
+        fraction * fibre.E1_MPa * first + (1 - fraction) * matrix.E_MPa * matrix_own
+    ) / law.E1_MPa
     drawn = fraction * (second + fibre.nu12 * first) + (1 - fraction) * (1 + matrix.nu) * matrix_own
+
     return along, drawn - law.nu12 * along
 
 
 def thermal_conductivity(fibre: Fibre, matrix: Matrix, fraction: Numbers) -> Pair | None:
-    """Conductivity along (mixture) and across (Chamis 1984) a yarn, W/(m K); None where one is not known."""
-    first, second, own = fibre.conductivity_1_W_per_mK, fibre.conductivity_2_W_per_mK, matrix.conductivity_W_per_mK
+    """Conductivity along (mixture) and across (Chamis 1984) a yarn, W/(m K).
+
+    None where one is not known.
+    """
+    first, second, own = (
+        fibre.conductivity_1_W_per_mK,
+        fibre.conductivity_2_W_per_mK,
+        matrix.conductivity_W_per_mK,
+    )
     if first is None or second is None or own is None:
         return None
 
     root = np.sqrt(fraction)
-    return fraction * first + (1 - fraction) * own, (1 - root) * own + root * _across(second, own, fraction)
+    return fraction * first + (1 - fraction) * own, (1 - root) * own + root * _across(
+        second, own, fraction
+    )
 
 
 def mixed(fibre: float | None, matrix: float | None, fraction: Numbers) -> Numbers | None:

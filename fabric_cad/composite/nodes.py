@@ -8,8 +8,8 @@ import numpy as np
 class Nodes:
     """Nodes that are added to: ``points`` (nodes, 3) in mm, addressed by their numbers.
 
-    On the torus a number stands for a node and all its images. What lies on x = 0 or y = 0 gets its images,
-    a period further, at the end (:meth:`close`).
+    On the torus a number stands for a node and all its images. What lies on x = 0 or y = 0 gets its
+    images, a period further, at the end (:meth:`close`).
     """
 
     def __init__(self, points: np.ndarray) -> None:
@@ -28,7 +28,9 @@ class Nodes:
 
     def add(self, places: np.ndarray) -> np.ndarray:
         """Numbers (...) of new nodes at places (..., 3), mm."""
-        numbers = np.arange(self._count, self._count + places[..., 0].size).reshape(places.shape[:-1])
+        numbers = np.arange(self._count, self._count + places[..., 0].size).reshape(
+            places.shape[:-1]
+        )
         self._parts.append(places.reshape(-1, 3))
         self._count += numbers.size
         return numbers
@@ -36,8 +38,8 @@ class Nodes:
     def images(self, axis: int, period: float, known: np.ndarray) -> np.ndarray:
         """The image (nodes,) of every node on a side of the cell (0: x = 0, 1: y = 0), -1 of others.
 
-        ``known`` (pairs, 2) lists nodes with images of their own, which are moved to where they belong;
-        the others' are added, ``period`` (mm) further.
+        ``known`` (pairs, 2) lists nodes with images of their own, which are moved to where they
+        belong; the others' are added, ``period`` (mm) further.
         """
         images = np.full(len(self), -1)
         images[known[:, 0]] = known[:, 1]

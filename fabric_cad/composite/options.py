@@ -59,12 +59,13 @@ class Margin:
 class CompositeOptions:
     """How the matrix fills the box.
 
-    ``layers`` of hexahedra lie between the yarns and either face of the box; ``grading`` is the height
-    of the layer at the box over that at the yarns, layers between follow a geometric series.
+    ``layers`` of hexahedra lie between the yarns and either face of the box; ``grading`` is the
+    height of the layer at the box over that at the yarns, layers between follow a geometric series.
 
-    ``contact``: ``bonded``, yarns that touch share their nodes; ``double``, each has nodes of its own inside
-    their patch of contact, so that they may slide and part there. The matrix is bonded to the yarns either
-    way, and closes on the rim of the patch, where all three share their nodes. Raises :class:`InputError`.
+    ``contact``: ``bonded``, yarns that touch share their nodes; ``double``, each has nodes of its
+    own inside their patch of contact, so that they may slide and part there. The matrix is bonded
+    to the yarns either way, and closes on the rim of the patch, where all three share their nodes.
+    Raises :class:`InputError`.
     """
 
     margin: Margin = Margin()
@@ -76,12 +77,16 @@ class CompositeOptions:
         if not isinstance(self.layers, Integral):
             raise InputError(Problem(f"{self.layers!r} is not a whole number", column="layers"))
         if not 1 <= self.layers <= _MOST_LAYERS:
-            raise InputError(Problem(f"{self.layers} is not from 1 to {_MOST_LAYERS}", column="layers"))
+            raise InputError(
+                Problem(f"{self.layers} is not from 1 to {_MOST_LAYERS}", column="layers")
+            )
         if not 1 / _MOST_GRADING <= self.grading <= _MOST_GRADING:
             message = f"{self.grading:g} is not from {1 / _MOST_GRADING:g} to {_MOST_GRADING:g}"
             raise InputError(Problem(message, column="grading"))
         if self.contact not in CONTACTS:
-            raise InputError(Problem(f"{self.contact!r} is none of {', '.join(CONTACTS)}", column="contact"))
+            raise InputError(
+                Problem(f"{self.contact!r} is none of {', '.join(CONTACTS)}", column="contact")
+            )
 
     def shares(self) -> np.ndarray:
         """Where layers end on the way from the yarns, 0, to the box, 1: (layers + 1,)."""

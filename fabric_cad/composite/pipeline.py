@@ -43,9 +43,9 @@ def make_composite(
 ) -> dict[str, Any]:
     """Make every file of one row's composite cell in the folder ``out/<row name>`` and return its report.
 
-    ``row`` is a table of one row; ``families`` the folder whose ``composite.toml`` holds, where it has one;
-    ``mesh`` holds keywords of :func:`fabric_cad.composite.spacing.composite_mesh_options`. Raises
-    :class:`FabricCadError`; the folder then is as it was.
+    ``row`` is a table of one row; ``families`` the folder whose ``composite.toml`` holds, where it
+    has one; ``mesh`` holds keywords of :func:`fabric_cad.composite.spacing.composite_mesh_options`.
+    Raises :class:`FabricCadError`; the folder then is as it was.
     """
     expect_row(row)
     stages = stages or Stages()
@@ -62,6 +62,7 @@ def make_composite(
         with stages("measure"):
             fractions, warnings = _fractions(row, families, fabric, cell)
             figures = figures_of(written, fractions)
+
         with stages("write deck"):
             _write_deck(cell, folder, f"composite cell of {name}", dialect)
         with stages("write vtu"):
@@ -71,11 +72,18 @@ def make_composite(
 
         volumes = _write_step(fabric, cell, folder / f"{NAME}.step", stages)
 
-        report = composite_report(fabric, options, cell, written, figures) | solids_report(volumes, cell)
+        report = composite_report(fabric, options, cell, written, figures) | solids_report(
+            volumes, cell
+        )
         report["seconds"] = {stage: round(seconds, 4) for stage, seconds in stages.seconds.items()}
         report |= trace(row, fineness)
-        report["warnings"] = [*map(str, implausible(row, table.columns)), *warnings, *doubts(report)]
+        report["warnings"] = [
+            *map(str, implausible(row, table.columns)),
+            *warnings,
+            *doubts(report),
+        ]
         write_traced(report, folder / f"{NAME}.json")
+
     return report
 
 
@@ -94,7 +102,9 @@ def _fractions(
         return unknown, [f"no fibre fractions: {problem}" for problem in error.problems]
 
 
-def _write_step(fabric: SolvedFabric, cell: CompositeCell, path: Path, stages: Stages) -> dict[str, float]:
+def _write_step(
+    fabric: SolvedFabric, cell: CompositeCell, path: Path, stages: Stages
+) -> dict[str, float]:
     """Write the solids of yarns and matrix; their volumes, mm3, as read back."""
     with stages("load CadQuery"), uninterrupted():
         from ..cad import read_step

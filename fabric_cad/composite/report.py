@@ -40,7 +40,11 @@ def figures_of(mesh: Mesh, fibre_fraction: np.ndarray) -> Figures:
 
 
 def composite_report(
-    fabric: SolvedFabric, options: CompositeOptions, cell: CompositeCell, written: Mesh, figures: Figures
+    fabric: SolvedFabric,
+    options: CompositeOptions,
+    cell: CompositeCell,
+    written: Mesh,
+    figures: Figures,
 ) -> dict:
     """The content of ``composite.json``, lengths mm; ``written`` is the mesh as read from its file.
 
@@ -84,12 +88,16 @@ def composite_report(
 
 def _check(row: str, error: float, figures: Figures) -> None:
     """Raise where volumes are more than rounding off the box, or elements are as good as folded."""
-    least, bad = figures.scaled_jacobian.min(), np.count_nonzero(figures.scaled_jacobian <= LEAST_JACOBIAN)
+    least, bad = (
+        figures.scaled_jacobian.min(),
+        np.count_nonzero(figures.scaled_jacobian <= LEAST_JACOBIAN),
+    )
     if abs(error) > _VOLUME or not figures.volumes.min() > 0:
         raise BuildError(
             f"{row}: the hexahedra do not fill the box: their volumes are {error:.3g} of it off, "
             f"the least is {figures.volumes.min():.3g} mm3"
         )
+
     if bad:
         raise BuildError(
             f"{row}: {bad} hexahedra of the composite cell have a scaled Jacobian not above {LEAST_JACOBIAN:g}, "
@@ -136,4 +144,5 @@ def summary(report: dict) -> str:
     if fibre is not None:
         lines.append(f"  fibre volume fraction {fibre:.4f}")
     lines.append(f"  seconds               {sum(report['seconds'].values()):.1f}")
+
     return "\n".join(lines)

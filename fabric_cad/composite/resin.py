@@ -1,7 +1,7 @@
 """Strips of resin beside flat and round yarns, which make them as pointed as lenticular ones.
 
-A sheet of elements that left one yarn's side would have to pass the neighbour's above it, and no layer of
-hexahedra does that. So each side gets a strip of resin with a triangular section::
+A sheet of elements that left one yarn's side would have to pass the neighbour's above it, and no
+layer of hexahedra does that. So each side gets a strip of resin with a triangular section::
 
         top |__                       base: the yarn's side, flat or of two arcs, 2k edges
             |  ''--__  upper          sheets: ``reach`` = n lines of the plan grid, n > k
@@ -9,8 +9,9 @@ hexahedra does that. So each side gets a strip of resin with a triangular sectio
             |  __--''  lower
      bottom |''
 
-In a crossing the strip of the upper yarn lies on the lower one's top, that of the lower one under the upper
-one's bottom. In the corner of n x n lines beside both yarns the two strips share the sheet
+In a crossing the strip of the upper yarn lies on the lower one's top, that of the lower one under
+the upper one's bottom. In the corner of n x n lines beside both yarns the two strips share the
+sheet
 
     upper yarn's edge + lower yarn's edge - corner of the crossing.
 """
@@ -31,8 +32,9 @@ from .yarns import Strip, of_direction
 _BULGE = 4.5
 """Beside arcs the sheets' heights go as this power of the way to the apex.
 
-An arc leaves the yarn's bottom with its slope. So do the sheets, hugging the fabric's faces before they come together,
-or they would lie along the arc: on the row twill22_round straight ones make corners of 4 degrees.
+An arc leaves the yarn's bottom with its slope. So do the sheets, hugging the fabric's faces before
+they come together, or they would lie along the arc: on the row twill22_round straight ones make
+corners of 4 degrees.
 """
 
 Corners = Mapping[tuple[int, int, bool, bool], np.ndarray]
@@ -66,7 +68,12 @@ def _corner(nodes: Nodes, ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
 
 
 def lay_resin(
-    strip: Strip, right: bool, crossed: Sequence[Strip], corners: Corners, nodes: Nodes, axes: tuple[Lines, Lines]
+    strip: Strip,
+    right: bool,
+    crossed: Sequence[Strip],
+    corners: Corners,
+    nodes: Nodes,
+    axes: tuple[Lines, Lines],
 ) -> Resin:
     """The strip of resin at one side of a yarn; ``axes`` are the lines along and across it."""
     along, across = axes
@@ -86,30 +93,42 @@ def lay_resin(
                 corner = corners[strip.index, number, end, right]
             else:
                 corner = corners[number, strip.index, right, end].T
+
             beside = along.outwards(number, end, reach)[1:]
             taken[beside], is_last[beside] = corner[1:], False
 
     share = np.abs(across.places[lines] - across.places[lines[0]])
     share = np.column_stack([share, share, share]) / share[-1]
     share[:, 2] **= _BULGE if across.side else 1.0
+
     for sheet, other in ((lower, upper), (upper, lower)):
         alone = np.flatnonzero((sheet[:, -1] < 0) & (other[:, -1] >= 0))
         sheet[alone, -1] = other[alone, -1]
-        places = nodes.points[other[alone]]  # the strip's height over them falls to the apex: the two never cross
+        places = nodes.points[
+            other[alone]
+        ]  # the strip's height over them falls to the apex: the two never cross
         height = nodes.points[sheet[alone, :1]] - places[:, :1]
         sheet[alone, 1:-1] = nodes.add((places + (1 - share) * height)[:, 1:-1])
+
     for number in range(along.yarns):
         _between((lower, upper), nodes, share, along, number)
-    return Resin(strip.direction, right, lower, upper, strip.side(right)[:-1], lines, is_lowest, is_highest)
+
+    return Resin(
+        strip.direction, right, lower, upper, strip.side(right)[:-1], lines, is_lowest, is_highest
+    )
 
 
 def _between(
-    sheets: tuple[np.ndarray, np.ndarray], nodes: Nodes, share: np.ndarray, along: Lines, crossing: int
+    sheets: tuple[np.ndarray, np.ndarray],
+    nodes: Nodes,
+    share: np.ndarray,
+    along: Lines,
+    crossing: int,
 ) -> None:
     """Fill in the sheets (stations, reach + 1) in the middle of the gap after a crossing, in place.
 
-    How far the apex is from mid-height of the yarn's side, and the sheets from their :func:`_lines_to_apex`, goes
-    over from one end of the middle part to the other.
+    How far the apex is from mid-height of the yarn's side, and the sheets from their
+    :func:`_lines_to_apex`, goes over from one end of the middle part to the other.
     """
     reach = len(share) - 1
     lines = along.first(crossing) + along.columns + np.arange(reach, along.between - reach + 1)
@@ -128,7 +147,9 @@ def _between(
         bend = points[sheet[ends]] - _lines_to_apex(points, sheet[ends], share)
         sheet[inner, -1] = apex
         blend = (1 - way[..., None]) * bend[0] + way[..., None] * bend[1]
-        sheet[inner, 1:-1] = nodes.add((_lines_to_apex(nodes.points, sheet[inner], share) + blend)[:, 1:-1])
+        sheet[inner, 1:-1] = nodes.add(
+            (_lines_to_apex(nodes.points, sheet[inner], share) + blend)[:, 1:-1]
+        )
 
 
 def _lines_to_apex(points: np.ndarray, sheet: np.ndarray, share: np.ndarray) -> np.ndarray:

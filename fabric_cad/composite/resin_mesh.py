@@ -40,8 +40,9 @@ class Resin:
 def triangle(reach: int, half: int) -> Template:
     """Quadrilaterals of a strip's section with ``reach`` columns and a base of 2 ``half`` edges.
 
-    Outline counter-clockwise from the base's lower end: lower sheet, apex, upper sheet, base. Three patches
-    meet in a point between the base's middle and the line where the last ``half`` columns begin.
+    Outline counter-clockwise from the base's lower end: lower sheet, apex, upper sheet, base. Three
+    patches meet in a point between the base's middle and the line where the last ``half`` columns
+    begin.
     """
     outline = 2 * reach + 2 * half
     node = np.eye(outline)
@@ -55,6 +56,7 @@ def triangle(reach: int, half: int) -> Template:
     beneath = coons(lower[: split + 1], to_base, base[: half + 1], to_lower)
     above = coons(to_base, upper[: split + 1], base[half:], to_upper)
     point = coons(lower[split:], to_upper, to_lower, upper[split:][::-1])
+
     return numbered(outline, [beneath, above, point])
 
 

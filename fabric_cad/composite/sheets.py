@@ -39,7 +39,10 @@ class Sheets:
         return cls(np.full((x.count, y.count), -1), np.full((x.count, y.count), -1))
 
     def along(self, direction: Direction) -> Sheets:
-        """The same numbers as (lines along, lines across) a direction; writing to them writes to these."""
+        """The same numbers as (lines along, lines across) a direction.
+
+        Writing to them writes to these.
+        """
         return self if direction is Direction.WEFT else Sheets(self.low.T, self.high.T)
 
 
@@ -69,7 +72,9 @@ def fill_pockets(sheets: Sheets, nodes: Nodes, x: Lines, y: Lines, reach: int) -
             rows = _pocket(x, warp, reach)
             inner = np.ix_(rows[1:-1] % x.count, columns[1:-1] % y.count)
             rim = sheets.low[np.ix_(rows % x.count, columns % y.count)]
-            sheets.low[inner] = sheets.high[inner] = nodes.add(_coons(nodes.points, rim, (x, rows), (y, columns)))
+            sheets.low[inner] = sheets.high[inner] = nodes.add(
+                _coons(nodes.points, rim, (x, rows), (y, columns))
+            )
 
 
 def _pocket(lines: Lines, yarn: int, reach: int) -> np.ndarray:
@@ -80,7 +85,8 @@ def _pocket(lines: Lines, yarn: int, reach: int) -> np.ndarray:
 def _coons(points: np.ndarray, rim: np.ndarray, *axes: tuple[Lines, np.ndarray]) -> np.ndarray:
     """Places of a pocket's inner nodes from its ``rim`` (rows, columns), whose inner part is not looked at.
 
-    What is blended is how far nodes are from the plan grid, so that it does not matter where the cell is cut.
+    What is blended is how far nodes are from the plan grid, so that it does not matter where the
+    cell is cut.
     """
     places, shares = [], []
     for lines, numbers in axes:
@@ -93,17 +99,20 @@ def _coons(points: np.ndarray, rim: np.ndarray, *axes: tuple[Lines, np.ndarray])
     grid[..., 0], grid[..., 1] = np.meshgrid(*places, indexing="ij")
     off = points[rim] - grid
     s, t = shares[0][1:-1, None, None], shares[1][None, 1:-1, None]
-    sides = (1 - t) * off[1:-1, :1] + t * off[1:-1, -1:] + (1 - s) * off[:1, 1:-1] + s * off[-1:, 1:-1]
+    sides = (
+        (1 - t) * off[1:-1, :1] + t * off[1:-1, -1:] + (1 - s) * off[:1, 1:-1] + s * off[-1:, 1:-1]
+    )
     lower = (1 - s) * off[0, 0] + s * off[-1, 0]
     upper = (1 - s) * off[0, -1] + s * off[-1, -1]
+
     return grid[1:-1, 1:-1] + sides - (1 - t) * lower - t * upper
 
 
 def layers_of(sheet: np.ndarray, nodes: Nodes, grid: np.ndarray, shares: np.ndarray) -> np.ndarray:
     """Node numbers (lines of x, lines of y, layers + 1) of the matrix from a sheet to the box.
 
-    ``grid`` (lines of x, lines of y, 3) are the nodes on the box, mm, ``shares`` (layers + 1,) the parts of the
-    way from the sheet, 0, to the box, 1.
+    ``grid`` (lines of x, lines of y, 3) are the nodes on the box, mm, ``shares`` (layers + 1,) the
+    parts of the way from the sheet, 0, to the box, 1.
     """
     start = nodes.points[sheet]
     places = start[..., None, :] + shares[1:, None] * (grid - start)[..., None, :]

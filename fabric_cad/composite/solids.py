@@ -26,7 +26,9 @@ def build_composite(fabric: SolvedFabric, size: np.ndarray) -> Cell:
     from ..cad import assemble, solid_of
     from ..cad.matrix import matrix_solid
 
-    skins = {swept.yarn.name: _raised(swept.skin, centring(fabric)) for swept in swept_yarns(fabric)}
+    skins = {
+        swept.yarn.name: _raised(swept.skin, centring(fabric)) for swept in swept_yarns(fabric)
+    }
     solids = {name: solid_of(skin, fabric.lattice) for name, skin in skins.items()}
     solids[MATRIX.name] = matrix_solid(list(skins.values()), size, fabric.lattice)
     return assemble(solids, fabric.name)

@@ -25,15 +25,16 @@ _OF_HALF_GAP = 0.65
 _STEEP_SIDES, _LEAST_OF_HALF_GAP = 0.4, 0.15
 """Width of a strip beside a flat side in a narrow gap, in heights of the side, and its least share of half the gap.
 
-There the other yarns climb steeply, and a strip that lies on them bends with them: the narrower it is, the less.
+There the other yarns climb steeply, and a strip that lies on them bends with them: the narrower it
+is, the less.
 """
 
 
 def composite_mesh_options(fabric: SolvedFabric, **asked: Any) -> MeshOptions:
     """Mesh options of a composite from what a user asked for, as :func:`fabric_cad.meshing.mesh_options` takes it.
 
-    Beside flat and round sections a gap has room for the strips of resin, unless ``gap`` is given. Raises
-    :class:`InputError` where strips do not fit.
+    Beside flat and round sections a gap has room for the strips of resin, unless ``gap`` is given.
+    Raises :class:`InputError` where strips do not fit.
     """
     options = mesh_options(fabric, **asked)
     if asked.get("gap") is None:
@@ -57,7 +58,8 @@ def _resin_lines(fabric: SolvedFabric, options: MeshOptions) -> int:
 def gap_shares(fabric: SolvedFabric, options: MeshOptions) -> Mapping[Direction, np.ndarray] | None:
     """For yarns of either direction, the shares from 0, a crossing's end, to 1, mid-gap, at which nodes lie.
 
-    None where they lie evenly. Raises :class:`InputError` where a gap has no room for the strips of resin.
+    None where they lie evenly. Raises :class:`InputError` where a gap has no room for the strips of
+    resin.
     """
     taken, half = _resin_lines(fabric, options), options.gap // 2
     if not taken:
@@ -72,6 +74,7 @@ def gap_shares(fabric: SolvedFabric, options: MeshOptions) -> Mapping[Direction,
         strip = _strip_share(fabric.section, lowest_side(fabric, direction.other) / width)
         inner, outer = np.linspace(0.0, strip, taken + 1), np.linspace(strip, 1.0, half - taken + 1)
         shares[direction] = np.concatenate([inner, outer[1:]])
+
     return MappingProxyType(shares)
 
 
@@ -90,7 +93,10 @@ def lowest_side(fabric: SolvedFabric, direction: Direction) -> float:
     own = [swept for swept in swept_yarns(fabric) if swept.yarn.direction is direction]
     sections = [section for swept in own for section in swept.sections]
     return min(
-        float(section.strips[f"{edge}_upper"].poles[inner, 1] - section.strips[f"{edge}_lower"].poles[inner, 1])
+        float(
+            section.strips[f"{edge}_upper"].poles[inner, 1]
+            - section.strips[f"{edge}_lower"].poles[inner, 1]
+        )
         for section in sections
         for edge, inner in (("left", LAST), ("right", FIRST))
     )

@@ -14,7 +14,10 @@ CLOSEST_PACKING = DENSEST
 
 @dataclass(frozen=True)
 class Fibre:
-    """A fibre: moduli MPa, axis 1 its own; density g/cm3, expansion 1/K, conductivity W/(m K), None: not known."""
+    """A fibre: moduli MPa, axis 1 its own.
+
+    Density g/cm3, expansion 1/K, conductivity W/(m K), None: not known.
+    """
 
     E1_MPa: float
     E2_MPa: float
@@ -58,8 +61,9 @@ class Matrix:
 class GivenYarn:
     """What is said of the yarn itself: its fibre fraction, and its constants where no micromechanics shall give them.
 
-    Units as of :class:`Fibre`; ``own_fraction`` is True where the fraction is given for one row alone;
-    ``fibre_weight_fraction`` is the share of a linear density that is fibre, less than 1 in commingled yarns.
+    Units as of :class:`Fibre`; ``own_fraction`` is True where the fraction is given for one row
+    alone; ``fibre_weight_fraction`` is the share of a linear density that is fibre, less than 1 in
+    commingled yarns.
     """
 
     fibre_fraction: float | None = None

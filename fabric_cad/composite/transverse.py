@@ -87,7 +87,10 @@ def expansion_strain(along: Numbers, across: Numbers, axes: np.ndarray) -> np.nd
 def second_order(along: Numbers, across: Numbers, axes: np.ndarray) -> np.ndarray:
     """Tensors (elements, 3, 3): ``along`` in the direction of ``axes`` (elements, 3), ``across`` normal to it."""
     axis = np.asarray(axes, dtype=float)
-    inner, outer = (np.broadcast_to(np.asarray(v, dtype=float), len(axis))[:, None, None] for v in (along, across))
+    inner, outer = (
+        np.broadcast_to(np.asarray(v, dtype=float), len(axis))[:, None, None]
+        for v in (along, across)
+    )
     return outer * np.eye(3) + (inner - outer) * axis[:, :, None] * axis[:, None, :]
 
 

@@ -26,8 +26,8 @@ def make_voxels(
 ) -> Voxels:
     """The composite cell of a table of one row as ``counts`` voxels: ``voxels.vti`` and ``.npz`` in ``out/<row name>``.
 
-    ``families`` is the folder whose ``composite.toml`` holds, where it has one; the box stands ``margin`` off the
-    yarns. Raises :class:`FabricCadError`; earlier results are then as they were.
+    ``families`` is the folder whose ``composite.toml`` holds, where it has one; the box stands
+    ``margin`` off the yarns. Raises :class:`FabricCadError`; earlier results are then as they were.
     """
     expect_row(row)
     (name,) = row.names

@@ -32,9 +32,9 @@ _PLACE = 1e-6  # mm, within which a node of the mesh stands where the plan has i
 class Strip:
     """A yarn's skin as node numbers.
 
-    ``bottom`` and ``top`` (stations, columns + 1), ``left`` and ``right`` (stations, upright + 1) from the
-    lower corner to the upper; ``high`` tells for each crossing whether the yarn passes over.
-    Station 0 is the yarn's start, the last one its end, a period further.
+    ``bottom`` and ``top`` (stations, columns + 1), ``left`` and ``right`` (stations, upright + 1)
+    from the lower corner to the upper; ``high`` tells for each crossing whether the yarn passes
+    over. Station 0 is the yarn's start, the last one its end, a period further.
     """
 
     direction: Direction
@@ -72,6 +72,7 @@ def strips_of(mesh: Mesh, fabric: SolvedFabric, plans: Sequence[Plan]) -> list[S
         if not np.isfinite(distance).all():
             raise BuildError(f"{plan.yarn.name}: the mesh has no node where its plan has one")
         strips.append(_strip(plan, own[nearest]))
+
     return strips
 
 

@@ -1,4 +1,7 @@
-"""The dry cell as keywords: nodes, C3D8, sets, surfaces, fibre orientation; no material, no step."""
+"""The dry cell as keywords: nodes, C3D8, sets, surfaces, fibre orientation.
+
+No material, no step.
+"""
 
 from __future__ import annotations
 
@@ -38,8 +41,12 @@ def cell_keywords(mesh: Mesh, rings: int = 0) -> Iterator[Keyword]:
     for body in mesh.bodies:
         elements = mesh.elements_of(body)
         yield Hexahedra(body.name, elements + 1, mesh.hexahedra[elements] + 1)
+
     for direction in DIRECTIONS:
-        yield ElementSet(direction, tuple(yarn.name for yarn in mesh.yarns if yarn.direction is direction))
+        yield ElementSet(
+            direction, tuple(yarn.name for yarn in mesh.yarns if yarn.direction is direction)
+        )
+
     for surface, quads in mesh.surfaces.items():
         yield NodeSet(surface.name, np.unique(quads) + 1)
 
@@ -47,6 +54,7 @@ def cell_keywords(mesh: Mesh, rings: int = 0) -> Iterator[Keyword]:
     for name, faces in (named | touching_faces(mesh, rings)).items():
         if len(faces):
             yield Surface(name, faces.elements + 1, faces.sides + 1)
+
     yield FibreOrientation(ORIENTATION, _axes(mesh))
 
 
@@ -59,5 +67,7 @@ def _axes(mesh: Mesh) -> np.ndarray:
 
 def write_deck(mesh: Mesh, path: str | Path, title: str, dialect: str = "calculix") -> None:
     """Write a mesh as an input deck to include in a model, which adds materials, sections and steps."""
-    head = Comment(f"{title}\nlengths in mm; include in a model that adds materials, sections and steps")
+    head = Comment(
+        f"{title}\nlengths in mm; include in a model that adds materials, sections and steps"
+    )
     write_keywords([head, *cell_keywords(mesh)], path, dialect)

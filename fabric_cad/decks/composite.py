@@ -1,4 +1,7 @@
-"""A composite cell as keywords: nodes, C3D8, sets, surfaces, fibre orientation; no material, no step."""
+"""A composite cell as keywords: nodes, C3D8, sets, surfaces, fibre orientation.
+
+No material, no step.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +24,9 @@ node sets and surfaces x_min ... z_max: the box's faces, whose nodes match those
 def composite_keywords(mesh: Mesh, box: Mapping[str, np.ndarray]) -> Iterator[Keyword]:
     """The keywords of a composite cell's mesh: those of its yarns and of the matrix, and the faces of its ``box``.
 
-    Beside what :func:`~fabric_cad.decks.cell.cell_keywords` writes of yarns: element set ``matrix``, node sets
-    and surfaces ``weft_1_matrix`` of the interfaces (of the yarn's faces) and ``x_min`` ... ``z_max`` of the
-    box, given as quadrilaterals (quads, 4) by name.
+    Beside what :func:`~fabric_cad.decks.cell.cell_keywords` writes of yarns: element set
+    ``matrix``, node sets and surfaces ``weft_1_matrix`` of the interfaces (of the yarn's faces) and
+    ``x_min`` ... ``z_max`` of the box, given as quadrilaterals (quads, 4) by name.
     """
     yield from cell_keywords(mesh)
     for name, quads in box.items():
@@ -33,7 +36,11 @@ def composite_keywords(mesh: Mesh, box: Mapping[str, np.ndarray]) -> Iterator[Ke
 
 
 def write_composite_deck(
-    mesh: Mesh, box: Mapping[str, np.ndarray], path: str | Path, title: str, dialect: str = "calculix"
+    mesh: Mesh,
+    box: Mapping[str, np.ndarray],
+    path: str | Path,
+    title: str,
+    dialect: str = "calculix",
 ) -> None:
     """Write a composite cell as an input deck to include in a model."""
     write_keywords([Comment(f"{title}\n{_HEAD}"), *composite_keywords(mesh, box)], path, dialect)

@@ -47,7 +47,9 @@ def element_faces(mesh: Mesh) -> dict[Surface, Faces]:
     """
     count = len(mesh.bodies)
     every = _faces_on(mesh, mesh.surfaces.values())
-    keys = _keys(mesh, every) * count + mesh.body[every.elements]  # bodies that are bonded share faces
+    keys = (
+        _keys(mesh, every) * count + mesh.body[every.elements]
+    )  # bodies that are bonded share faces
     wanted = {
         surface: _face_keys(quads, len(mesh.points)) * count + mesh.bodies.index(surface.body)
         for surface, quads in mesh.surfaces.items()
@@ -59,7 +61,10 @@ def outer_faces(mesh: Mesh, surfaces: Mapping[str, np.ndarray]) -> dict[str, Fac
     """The same for quadrilaterals (quads, 4) on the outside of a mesh, which are the face of one element each."""
     every = _faces_on(mesh, surfaces.values())
     keys = _keys(mesh, every)
-    return {name: _sought(name, _face_keys(quads, len(mesh.points)), keys, every) for name, quads in surfaces.items()}
+    return {
+        name: _sought(name, _face_keys(quads, len(mesh.points)), keys, every)
+        for name, quads in surfaces.items()
+    }
 
 
 def _faces_on(mesh: Mesh, surfaces: Iterable[np.ndarray]) -> Faces:
@@ -105,8 +110,12 @@ def touching_faces(mesh: Mesh, rings: int = 0) -> dict[str, Faces]:
     faces = element_faces(mesh)
     names = [f"{direction}_{side}" for direction in DIRECTIONS for side in ("top", "bottom")]
     patches: dict[str, list[Faces]] = {name: [] for name in names}
+
     for yarn in mesh.yarns:
-        touching, free = faces[Surface(yarn, SurfaceKind.CONTACT)], faces.get(Surface(yarn, SurfaceKind.FREE))
+        touching, free = (
+            faces[Surface(yarn, SurfaceKind.CONTACT)],
+            faces.get(Surface(yarn, SurfaceKind.FREE)),
+        )
         _, upward = _quads(mesh, touching)
 
         for side, chosen in (("top", upward > 0), ("bottom", upward <= 0)):
@@ -114,6 +123,7 @@ def touching_faces(mesh: Mesh, rings: int = 0) -> dict[str, Faces]:
             if rings and free is not None:
                 taken = _widened(mesh, taken, free, side == "top", rings)
             patches[f"{yarn.direction}_{side}"].append(taken)
+
     return {name: Faces.together(parts) for name, parts in patches.items()}
 
 
@@ -131,7 +141,9 @@ def area_vectors(mesh: Mesh, quads: np.ndarray) -> np.ndarray:
 def _quads(mesh: Mesh, faces: Faces) -> tuple[np.ndarray, np.ndarray]:
     """Corner nodes (quads, 4) of element faces and how far they look up: the sine of their normal's rise."""
     quads = face_quads(mesh, faces)
-    outward = mesh.points[quads].mean(axis=1) - mesh.points[mesh.hexahedra[faces.elements]].mean(axis=1)
+    outward = mesh.points[quads].mean(axis=1) - mesh.points[mesh.hexahedra[faces.elements]].mean(
+        axis=1
+    )
     normal = area_vectors(mesh, quads)
     normal *= np.sign((normal * outward).sum(axis=1))[:, None]
     return quads, normal[:, 2] / np.linalg.norm(normal, axis=1)

@@ -30,7 +30,9 @@ class Keyword:
         return "".join(self.lines("calculix"))
 
 
-def write_keywords(keywords: Iterable[Keyword], path: str | Path, dialect: str = "calculix") -> None:
+def write_keywords(
+    keywords: Iterable[Keyword], path: str | Path, dialect: str = "calculix"
+) -> None:
     """Write keywords as a deck, one after another. Raises ValueError where there is no such dialect."""
     if dialect not in DIALECTS:
         raise ValueError(f"dialect: expected one of {', '.join(DIALECTS)}, got {dialect!r}")
@@ -204,7 +206,10 @@ class SolidSection(Keyword):
 
 @dataclass(frozen=True)
 class PenaltyInteraction(Keyword):
-    """``*SURFACE INTERACTION`` of a linear penalty (N/mm3) and friction; ``stick`` (N/mm3) is CalculiX' stick slope."""
+    """``*SURFACE INTERACTION`` of a linear penalty (N/mm3) and friction.
+
+    ``stick`` (N/mm3) is CalculiX' stick slope.
+    """
 
     name: str
     stiffness: float
@@ -252,7 +257,12 @@ class Equation(Keyword):
 
     def lines(self, dialect: str) -> Iterator[str]:
         yield f"*EQUATION\n{len(self.terms)}\n"
-        yield ", ".join(f"{node}, {direction}, {factor:.10g}" for node, direction, factor in self.terms) + "\n"
+        yield (
+            ", ".join(
+                f"{node}, {direction}, {factor:.10g}" for node, direction, factor in self.terms
+            )
+            + "\n"
+        )
 
 
 @dataclass(frozen=True)
@@ -264,7 +274,8 @@ class Boundary(Keyword):
     def lines(self, dialect: str) -> Iterator[str]:
         yield "*BOUNDARY\n"
         yield from (
-            f"{node}, {direction}, {direction}, {value:.12g}\n" for node, direction, value in self.displacements
+            f"{node}, {direction}, {direction}, {value:.12g}\n"
+            for node, direction, value in self.displacements
         )
 
 
@@ -293,9 +304,9 @@ class Output(Keyword):
 class StaticStep(Keyword):
     """``*STEP, NLGEOM`` with ``*STATIC``: ``content`` applied over a time of 1, ``first`` of it at once.
 
-    CalculiX settles which points touch early in an increment; the short second one settles it anew, near the
-    end, so that the state hardly depends on the one before. An increment that does not converge is cut
-    down to ``smallest``; at most ``increments``.
+    CalculiX settles which points touch early in an increment; the short second one settles it anew,
+    near the end, so that the state hardly depends on the one before. An increment that does not
+    converge is cut down to ``smallest``; at most ``increments``.
     """
 
     title: str
@@ -316,8 +327,8 @@ class StaticStep(Keyword):
 class StressOutput(Keyword):
     """Displacements, and the stresses at all integration points of the set ``elements``, in the axes of space.
 
-    CalculiX prints them into the ``.dat``, with the elements' energies and volumes summed; Abaqus keeps the points'
-    volumes with them.
+    CalculiX prints them into the ``.dat``, with the elements' energies and volumes summed; Abaqus
+    keeps the points' volumes with them.
     """
 
     elements: str

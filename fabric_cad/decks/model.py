@@ -65,7 +65,10 @@ class Load:
 
 @dataclass(frozen=True)
 class Touch:
-    """The contact of yarns: see :class:`fabric_cad.simulation.settings.ContactLaw`; ``rings`` widen the patches."""
+    """The contact of yarns: see :class:`fabric_cad.simulation.settings.ContactLaw`.
+
+    ``rings`` widen the patches.
+    """
 
     kind: str
     stiffness: float
@@ -100,11 +103,19 @@ def model_keywords(
     for name in DIRECTIONS:
         ends = (Surface(yarn, SurfaceKind.END) for yarn in mesh.yarns if yarn.direction is name)
         yield NodeSet(f"{name}_ends", tuple(end.name for end in ends))
+
     yield Boundary(fixings(mesh))
-    output = Output(tuple(f"{name}_ends" for name in DIRECTIONS), contact=bool(pairs) and touch.kind == "penalty")
+    output = Output(
+        tuple(f"{name}_ends" for name in DIRECTIONS),
+        contact=bool(pairs) and touch.kind == "penalty",
+    )
     for load in loads:
         moved = [(name, getattr(load, name)) for name in DIRECTIONS]
-        driven = [(reference[name], axis, value) for name, change in moved for axis, value in enumerate(change, 1)]
+        driven = [
+            (reference[name], axis, value)
+            for name, change in moved
+            for axis, value in enumerate(change, 1)
+        ]
         yield StaticStep(load.title, (Boundary(tuple(driven)), output))
 
 
@@ -133,19 +144,30 @@ def _contact(pairs: list[tuple[str, str]], touch: Touch) -> Iterator[Keyword]:
         yield from (ContactPair("yarn_on_yarn", slave, master) for slave, master in pairs)
 
 
-def periodic_equations(mesh: Mesh, lattice: Lattice, reference: dict[Direction, int]) -> Iterator[Equation]:
+def periodic_equations(
+    mesh: Mesh, lattice: Lattice, reference: dict[Direction, int]
+) -> Iterator[Equation]:
     """Three equations a pair of end nodes: displacement of the end = of the start + of the reference node."""
     from scipy.spatial import cKDTree
 
     for yarn in mesh.yarns:
         shift = lattice.vectors[yarn.direction.axis]
         starts, ends = mesh.nodes_of(yarn, SurfaceKind.START), mesh.nodes_of(yarn, SurfaceKind.END)
-        distance, partner = map(np.asarray, cKDTree(mesh.points[ends]).query(mesh.points[starts] + shift))
-        if len(starts) != len(ends) or distance.max() > _PLACE or len(np.unique(partner)) != len(ends):
+        distance, partner = map(
+            np.asarray, cKDTree(mesh.points[ends]).query(mesh.points[starts] + shift)
+        )
+        if (
+            len(starts) != len(ends)
+            or distance.max() > _PLACE
+            or len(np.unique(partner)) != len(ends)
+        ):
             raise BuildError(f"{yarn}: the nodes of its two ends do not match")
+
         for start, end in zip((starts + 1).tolist(), (ends[partner] + 1).tolist()):
             for axis in (1, 2, 3):
-                yield Equation(((end, axis, 1.0), (start, axis, -1.0), (reference[yarn.direction], axis, -1.0)))
+                yield Equation(
+                    ((end, axis, 1.0), (start, axis, -1.0), (reference[yarn.direction], axis, -1.0))
+                )
 
 
 def fixings(mesh: Mesh) -> tuple[tuple[int, int, float], ...]:

@@ -38,22 +38,31 @@ class CellFlow:
     @property
     def porosity(self) -> float:
         """Share of the cell that is not yarn."""
-        space = self.equations.volumes if self.pores is None else self.equations.volumes[self.cell.in_matrix]
+        space = (
+            self.equations.volumes
+            if self.pores is None
+            else self.equations.volumes[self.cell.in_matrix]
+        )
         return float(space.sum() / self.mesh.mesh.volume)
 
 
-def cell_flow(fabric: SolvedFabric, fineness: Fineness, top: Top, pores: Pores | None = None) -> CellFlow:
+def cell_flow(
+    fabric: SolvedFabric, fineness: Fineness, top: Top, pores: Pores | None = None
+) -> CellFlow:
     """The flow between the yarns of a fabric's cell, and with ``pores`` through them, else they are rigid.
 
-    Raises :class:`InputError` where the mesh cannot be so or would not fit in memory, :class:`SolverError` where the
-    flow is not solved.
+    Raises :class:`InputError` where the mesh cannot be so or would not fit in memory,
+    :class:`SolverError` where the flow is not solved.
     """
     cell = mesh_composite(fabric, fineness.yarns, fineness.box)
     rigid = pores is None
     _refuse_too_large(int(np.count_nonzero(cell.in_matrix)) if rigid else len(cell.mesh.hexahedra))
     mesh = space_between(cell, fabric, top) if rigid else whole_space(cell, fabric, top)
-    equations = assemble(mesh, held(mesh, top), None if pores is None else pores.resistance(cell, fabric))
+    equations = assemble(
+        mesh, held(mesh, top), None if pores is None else pores.resistance(cell, fabric)
+    )
     flow = stokes_flow(equations, open_directions(mesh), mesh.mesh.volume)
+
     return CellFlow(fabric, fineness, cell, top, mesh, equations, flow, pores)
 
 

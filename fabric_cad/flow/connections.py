@@ -27,6 +27,7 @@ def open_directions(mesh: QuadraticMesh) -> np.ndarray:
         return np.eye(3)
     spanned = ways[:rank].T @ ways[:rank]
     axes = [axis for axis in np.eye(3) if np.allclose(spanned @ axis, axis)]
+
     return np.array(axes).reshape(-1, 3) if len(axes) == rank else ways[:rank]
 
 

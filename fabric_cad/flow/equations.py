@@ -4,8 +4,8 @@ With unit viscosity, velocity u (mm2 under a unit pressure gradient) and pressur
 
     integral of grad u : grad v  -  p div v  =  f . integral of v,     integral of q div u = 0,
 
-for all v that vanish on the walls and all q. One scalar Laplacian serves the three components. Where the space is
-porous the first line has Brinkman's drag, integral of v . k^-1 u, beside it.
+for all v that vanish on the walls and all q. One scalar Laplacian serves the three components.
+Where the space is porous the first line has Brinkman's drag, integral of v . k^-1 u, beside it.
 """
 
 from __future__ import annotations
@@ -27,12 +27,13 @@ _NO_DRAG = 1e-12  # of the largest: rounding
 class Equations:
     """The equations in the free unknowns.
 
-    ``laplacian`` (nodes, nodes), mm; ``divergence`` (corners, 3 nodes), mm2, components of a node side by side;
-    ``weights`` (nodes,): the integral of every node's basis function, mm3; ``masses`` (corners,) that of a corner's.
-    ``free`` (nodes, 3) tells which components may move, ``line`` (nodes,) on which vertical line a node stands;
-    ``node`` (nodes of the mesh,) and ``corner`` (corners of the mesh,) are the numbers here, -1 for none.
-    ``drag`` maps components (i, j), i <= j, to matrices (nodes, nodes), mm; ``seepage`` (corners, corners), mm3, is
-    what pressure differences drive through pores, None without drag; ``volumes`` (elements,), mm3.
+    ``laplacian`` (nodes, nodes), mm; ``divergence`` (corners, 3 nodes), mm2, components of a node
+    side by side; ``weights`` (nodes,): the integral of every node's basis function, mm3; ``masses``
+    (corners,) that of a corner's. ``free`` (nodes, 3) tells which components may move, ``line``
+    (nodes,) on which vertical line a node stands; ``node`` (nodes of the mesh,) and ``corner``
+    (corners of the mesh,) are the numbers here, -1 for none. ``drag`` maps components (i, j), i <=
+    j, to matrices (nodes, nodes), mm; ``seepage`` (corners, corners), mm3, is what pressure
+    differences drive through pores, None without drag; ``volumes`` (elements,), mm3.
     """
 
     laplacian: csr_array
@@ -48,11 +49,14 @@ class Equations:
     seepage: csr_array | None
 
 
-def assemble(mesh: QuadraticMesh, fixed: np.ndarray, resistance: np.ndarray | None = None) -> Equations:
+def assemble(
+    mesh: QuadraticMesh, fixed: np.ndarray, resistance: np.ndarray | None = None
+) -> Equations:
     """The equations of a mesh, where ``fixed`` (nodes of the mesh, 3) are velocities that vanish.
 
-    ``resistance`` (elements, 3, 3), 1/mm2, is the inverse of the permeability where the space is porous, else 0.
-    Raises :class:`~fabric_cad.support.errors.BuildError` where faces that repeat do not match or elements are folded.
+    ``resistance`` (elements, 3, 3), 1/mm2, is the inverse of the permeability where the space is
+    porous, else 0. Raises :class:`~fabric_cad.support.errors.BuildError` where faces that repeat do
+    not match or elements are folded.
     """
     held = np.zeros((mesh.unknowns.max() + 1, 3), dtype=bool)
     np.logical_or.at(held, mesh.unknowns, fixed)
@@ -63,18 +67,31 @@ def assemble(mesh: QuadraticMesh, fixed: np.ndarray, resistance: np.ndarray | No
 
     laplacian = csr_array((count, count))
     divergence = csr_array((corner_count, 3 * count))
-    weights, masses, volumes = np.zeros(count + 1), np.zeros(corner_count), np.empty(len(mesh.nodes))
+    weights, masses, volumes = (
+        np.zeros(count + 1),
+        np.zeros(corner_count),
+        np.empty(len(mesh.nodes)),
+    )
     porous = _Porous(mesh, resistance, (count, corner_count))
+
     for chunk in mesh.chunks():
         own = node[mesh.nodes[chunk.elements]]
         ends = corners[mesh.nodes[chunk.elements][:, CORNER_NODES]]
         scaled = (chunk.gradients * np.sqrt(chunk.weights)[..., None, None]).transpose(0, 2, 1, 3)
         scaled = scaled.reshape(len(own), 27, -1)
-        laplacian = laplacian + _matrix(np.matmul(scaled, scaled.transpose(0, 2, 1)), own, own, (count, count))
+        laplacian = laplacian + _matrix(
+            np.matmul(scaled, scaled.transpose(0, 2, 1)), own, own, (count, count)
+        )
 
-        local = np.einsum("nq,nqb,nqac->nbac", chunk.weights, chunk.linear, chunk.gradients, optimize=True)
-        components = np.where(own[..., None] < 0, -1, 3 * own[..., None] + np.arange(3)).reshape(len(own), 81)
-        divergence = divergence + _matrix(local.reshape(len(own), 8, 81), ends, components, divergence.shape)
+        local = np.einsum(
+            "nq,nqb,nqac->nbac", chunk.weights, chunk.linear, chunk.gradients, optimize=True
+        )
+        components = np.where(own[..., None] < 0, -1, 3 * own[..., None] + np.arange(3)).reshape(
+            len(own), 81
+        )
+        divergence = divergence + _matrix(
+            local.reshape(len(own), 8, 81), ends, components, divergence.shape
+        )
         np.add.at(weights, own, np.einsum("nq,nqa->na", chunk.weights, chunk.values))
         volumes[chunk.elements] = chunk.weights.sum(axis=1)
         porous.add(chunk, own, ends)
@@ -102,7 +119,9 @@ def assemble(mesh: QuadraticMesh, fixed: np.ndarray, resistance: np.ndarray | No
 class _Porous:
     """The matrices of drag and seepage while elements are summed."""
 
-    def __init__(self, mesh: QuadraticMesh, resistance: np.ndarray | None, counts: tuple[int, int]) -> None:
+    def __init__(
+        self, mesh: QuadraticMesh, resistance: np.ndarray | None, counts: tuple[int, int]
+    ) -> None:
         self.drag: dict[tuple[int, int], csr_array] = {}
         self.seepage: csr_array | None = None
         self._resistance, self._counts = resistance, counts
@@ -114,9 +133,12 @@ class _Porous:
             for j in range(i, 3):
                 if np.abs(resistance[:, i, j]).max() > _NO_DRAG * size:
                     self.drag[i, j] = csr_array((counts[0], counts[0]))
+
         self.seepage = csr_array((counts[1], counts[1]))
         is_porous = resistance.any(axis=(1, 2))
-        free = np.eye(3) * mesh.mesh.vectors[2, 2] ** 2  # so far off the pores that it hardly counts
+        free = (
+            np.eye(3) * mesh.mesh.vectors[2, 2] ** 2
+        )  # so far off the pores that it hardly counts
         self._permeability = np.broadcast_to(free, resistance.shape).copy()
         self._permeability[is_porous] = np.linalg.inv(resistance[is_porous])
 
@@ -125,7 +147,9 @@ class _Porous:
         if self._resistance is None or self.seepage is None:
             return
 
-        mass = np.einsum("nq,nqa,nqb->nab", chunk.weights, chunk.values, chunk.values, optimize=True)
+        mass = np.einsum(
+            "nq,nqa,nqb->nab", chunk.weights, chunk.values, chunk.values, optimize=True
+        )
         for (i, j), matrix in self.drag.items():
             local = self._resistance[chunk.elements, i, j, None, None] * mass
             self.drag[i, j] = matrix + _matrix(local, own, own, matrix.shape)
@@ -136,8 +160,13 @@ class _Porous:
         self.seepage = self.seepage + _matrix(local, ends, ends, self.seepage.shape)
 
 
-def _matrix(local: np.ndarray, rows: np.ndarray, columns: np.ndarray, shape: tuple[int, int]) -> csr_array:
-    """The sum of local matrices (elements, m, n) over ``rows`` (elements, m) and ``columns``; -1 are left out."""
+def _matrix(
+    local: np.ndarray, rows: np.ndarray, columns: np.ndarray, shape: tuple[int, int]
+) -> csr_array:
+    """The sum of local matrices (elements, m, n) over ``rows`` (elements, m) and ``columns``.
+
+    -1 are left out.
+    """
     row, column = np.broadcast_arrays(rows[:, :, None], columns[:, None, :])
     kept = (row >= 0) & (column >= 0)
     return coo_array((local[kept], (row[kept], column[kept])), shape=shape).tocsr()

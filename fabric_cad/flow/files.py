@@ -14,16 +14,39 @@ from .lines import lines_of, vertical_links
 from .quadratic import CORNER_NODES, FACE_NODES, PLACES, QuadraticMesh
 
 _VTK_TRIQUADRATIC_HEXAHEDRON = 29
-_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+_EDGES = [
+    (0, 1),
+    (1, 2),
+    (2, 3),
+    (3, 0),
+    (4, 5),
+    (5, 6),
+    (6, 7),
+    (7, 4),
+    (0, 4),
+    (1, 5),
+    (2, 6),
+    (3, 7),
+]
 _FACES = [(0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (3, 2, 6, 7), (0, 1, 2, 3), (4, 5, 6, 7)]
-_TRIANGLES = [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (3, 4, 7), (3, 7, 6), (4, 5, 8), (4, 8, 7)]  # of nine nodes
+_TRIANGLES = [
+    (0, 1, 4),
+    (0, 4, 3),
+    (1, 2, 5),
+    (1, 5, 4),
+    (3, 4, 7),
+    (3, 7, 6),
+    (4, 5, 8),
+    (4, 8, 7),
+]  # of nine nodes
 _ON_SECTION = 1e-7  # of a period
 
 
 def write_flow(solved: CellFlow, path: Path) -> None:
     """Write a ``.vtu`` of quadratic hexahedra with velocity (mm2) and pressure (mm) for every direction that is open.
 
-    Both are for a unit pressure gradient over viscosity; the pressure is that beside the mean gradient. Raises OSError.
+    Both are for a unit pressure gradient over viscosity; the pressure is that beside the mean
+    gradient. Raises OSError.
     """
     mesh = solved.mesh
     order = _vtk_order()
@@ -31,10 +54,12 @@ def write_flow(solved: CellFlow, path: Path) -> None:
     kinds = np.full(len(cells), _VTK_TRIQUADRATIC_HEXAHEDRON, dtype=np.uint8)
     grid = pyvista().UnstructuredGrid(cells.ravel(), kinds, mesh.points)
     velocity, pressure = nodal_velocity(solved), _nodal_pressure(solved)
+
     for number, direction in enumerate(solved.flow.directions):
         name = name_of(direction)
         grid.point_data[f"velocity_{name}_mm2"] = velocity[..., number]
         grid.point_data[f"pressure_{name}_mm"] = pressure[:, number]
+
     write_grid(grid, path)
 
 
@@ -50,7 +75,10 @@ def draw_flow(solved: CellFlow, path: Path, title: str) -> None:
 
     plan, flux = _flux(solved.mesh, velocity[..., 0])
     shown = [0, *([len(names) - 1] if len(names) > 1 else [])]
-    sections = [_section(solved, velocity[..., n], f"speed at y = 0, gradient along {names[n]}") for n in shown]
+    sections = [
+        _section(solved, velocity[..., n], f"speed at y = 0, gradient along {names[n]}")
+        for n in shown
+    ]
     text = f"flux through the thickness, gradient along {names[0]}"
     save_figure(plot_flow(plan, flux, text, sections), path, title)
 
@@ -64,7 +92,11 @@ def nodal_velocity(solved: CellFlow) -> np.ndarray:
 def name_of(direction: np.ndarray) -> str:
     """``x``, ``y``, ``z``, or an oblique direction's components."""
     axis = int(np.argmax(np.abs(direction)))
-    return "xyz"[axis] if abs(direction[axis]) > 1 - 1e-9 else "_".join(f"{part:.3f}" for part in direction)
+    return (
+        "xyz"[axis]
+        if abs(direction[axis]) > 1 - 1e-9
+        else "_".join(f"{part:.3f}" for part in direction)
+    )
 
 
 def _nodal_pressure(solved: CellFlow) -> np.ndarray:
@@ -97,9 +129,14 @@ def _flux(mesh: QuadraticMesh, velocity: np.ndarray) -> tuple[np.ndarray, np.nda
     count = line.max() + 1
     flux = np.stack([np.bincount(line[lower], part, minlength=count) for part in parts.T], axis=1)
     total = np.bincount(line)
-    places = np.stack([np.bincount(line, mesh.points[:, axis]) / total for axis in range(2)], axis=1)
+    places = np.stack(
+        [np.bincount(line, mesh.points[:, axis]) / total for axis in range(2)], axis=1
+    )
     distinct, number = np.unique(np.round(places, 6), axis=0, return_inverse=True)
-    sums = [np.bincount(number.ravel(), part, minlength=len(distinct)) for part in flux.T]  # below and above a yarn
+    sums = [
+        np.bincount(number.ravel(), part, minlength=len(distinct)) for part in flux.T
+    ]  # below and above a yarn
+
     return distinct, np.stack(sums, axis=1)
 
 

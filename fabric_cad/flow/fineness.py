@@ -61,7 +61,8 @@ def fineness(
 ) -> Fineness:
     """The fineness for a fabric from what is asked for.
 
-    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`. Raises :class:`InputError`.
+    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`. Raises
+    :class:`InputError`.
     """
     used = composite_mesh_options(fabric, **(mesh if "size" in mesh else USUAL | dict(mesh)))
     box = CompositeOptions(
@@ -69,4 +70,5 @@ def fineness(
         layers=LAYERS if layers is None else layers,
         grading=GRADINGS[top] if grading is None else grading,
     )
+
     return Fineness(used, box)

@@ -1,9 +1,11 @@
 """Permeability of aligned fibres, for any number of fibre fractions at once.
 
-B. R. Gebart, *Permeability of unidirectional reinforcements for RTM*, Journal of Composite Materials 26 (1992)
-1100-1133, hexagonal packing: with R the fibres' radius and V their fraction, at most V0 = pi / (2 sqrt 3),
+B. R. Gebart, *Permeability of unidirectional reinforcements for RTM*, Journal of Composite
+Materials 26 (1992) 1100-1133, hexagonal packing: with R the fibres' radius and V their fraction, at
+most V0 = pi / (2 sqrt 3),
 
-    along K = 8 R^2 / 53 (1 - V)^3 / V^2,     across K = 16 R^2 / (9 pi sqrt 6) (sqrt(V0 / V) - 1)^(5/2).
+    along K = 8 R^2 / 53 (1 - V)^3 / V^2,     across K = 16 R^2 / (9 pi sqrt 6) (sqrt(V0 / V) -
+    1)^(5/2).
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """The Laplacian inverted line by line: all nodes that stand above each other, and those alone.
 
-Layers are thinner than elements are wide, so that the neighbours on a vertical line are the ones that pull most.
+Layers are thinner than elements are wide, so that the neighbours on a vertical line are the ones
+that pull most.
 """
 
 from __future__ import annotations
@@ -30,7 +31,9 @@ def vertical_links(mesh: QuadraticMesh) -> np.ndarray:
 
 def lines_of(links: np.ndarray, count: int) -> np.ndarray:
     """For each of ``count`` nodes the number (count,) of the line it stands on, from ``links`` (pairs, 2)."""
-    graph = coo_array((np.ones(len(links), dtype=np.int8), (links[:, 0], links[:, 1])), shape=(count, count))
+    graph = coo_array(
+        (np.ones(len(links), dtype=np.int8), (links[:, 0], links[:, 1])), shape=(count, count)
+    )
     return connected_components(graph.tocsr(), directed=False)[1]
 
 
@@ -49,6 +52,7 @@ def line_inverse(matrix: csr_array, line: np.ndarray) -> csr_array:
     own = line[entries.row] == line[entries.col]
     row, column, data = entries.row[own], entries.col[own], entries.data[own]
     rows, columns, inverses = [], [], []
+
     for count in np.unique(counts):  # lines of equal length together
         lines = np.flatnonzero(counts == count)
         place = np.full(len(counts), -1)

@@ -1,8 +1,8 @@
 """MINRES for several loads at once, which share every product with the matrix.
 
-C. C. Paige and M. A. Saunders, *Solution of sparse indefinite systems of linear equations*, SIAM Journal on
-Numerical Analysis 12 (1975) 617-629, preconditioned as in H. Elman, D. Silvester and A. Wathen, *Finite elements
-and fast iterative solvers* (2014), algorithm 4.1.
+C. C. Paige and M. A. Saunders, *Solution of sparse indefinite systems of linear equations*, SIAM
+Journal on Numerical Analysis 12 (1975) 617-629, preconditioned as in H. Elman, D. Silvester and A.
+Wathen, *Finite elements and fast iterative solvers* (2014), algorithm 4.1.
 """
 
 from __future__ import annotations
@@ -29,12 +29,17 @@ class Solution:
 
 
 def solve(
-    multiply: Operator, loads: np.ndarray, precondition: Operator, tolerance: float, most: int = MOST_ITERATIONS
+    multiply: Operator,
+    loads: np.ndarray,
+    precondition: Operator,
+    tolerance: float,
+    most: int = MOST_ITERATIONS,
 ) -> Solution:
     """Solve S x = ``loads`` (unknowns, loads) for a symmetric S, ``precondition`` being positive definite.
 
-    Stops where the residual of every load, in the norm of the preconditioner, is ``tolerance`` times the load's.
-    Raises :class:`SolverError` with the residual where ``most`` iterations do not do.
+    Stops where the residual of every load, in the norm of the preconditioner, is ``tolerance``
+    times the load's. Raises :class:`SolverError` with the residual where ``most`` iterations do not
+    do.
     """
     count = loads.shape[1]
     values = np.zeros_like(loads)
@@ -58,7 +63,10 @@ def solve(
         image -= length / before * older
         older, basis = basis, image
         conditioned = precondition(basis)
-        before, length = np.where(length > 0, length, 1.0), np.sqrt(np.maximum(_products(conditioned, basis), 0.0))
+        before, length = (
+            np.where(length > 0, length, 1.0),
+            np.sqrt(np.maximum(_products(conditioned, basis), 0.0)),
+        )
 
         head = cosines[1] * diagonal - cosines[0] * sines[1] * before
         pivot = np.hypot(head, length)
@@ -67,9 +75,14 @@ def solve(
         inverse = np.where(pivot > 0, 1 / np.where(pivot > 0, pivot, 1.0), 0.0)
         newest = (unit - third * older_way - second * way) * inverse
         older_way, way = way, newest
-        sines, cosines = np.stack([sines[1], length * inverse]), np.stack([cosines[1], head * inverse])
+        sines, cosines = (
+            np.stack([sines[1], length * inverse]),
+            np.stack([cosines[1], head * inverse]),
+        )
 
-        values += np.where(going, cosines[1] * remaining, 0.0) * way  # a load that is solved stays as it is
+        values += (
+            np.where(going, cosines[1] * remaining, 0.0) * way
+        )  # a load that is solved stays as it is
         remaining = np.where(going, -sines[1] * remaining, remaining)
         if not np.isfinite(remaining).all():
             break
@@ -78,7 +91,9 @@ def solve(
             return Solution(values, reached, iteration)
 
     largest = f"the residual is {reached:.3g} of the load, above {tolerance:g}"
-    raise SolverError(f"the flow was not solved: after {iteration} iterations {largest}; nothing is written")
+    raise SolverError(
+        f"the flow was not solved: after {iteration} iterations {largest}; nothing is written"
+    )
 
 
 def _products(first: np.ndarray, second: np.ndarray) -> np.ndarray:

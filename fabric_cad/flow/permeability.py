@@ -21,9 +21,9 @@ _NONE = 1e-12  # of the largest principal value: less is a closed direction
 class Permeability:
     """Permeability of a cell under a unit margin.
 
-    ``principal`` (3,), mm2, from the largest to the least, along the rows of ``axes`` (3, 3); ``error`` (3,) is by
-    how much, in per cent, each differs on a mesh of half the layers, 0 where it is 0. ``study`` maps other margins
-    (mm) to their tensors, mm2.
+    ``principal`` (3,), mm2, from the largest to the least, along the rows of ``axes`` (3, 3);
+    ``error`` (3,) is by how much, in per cent, each differs on a mesh of half the layers, 0 where
+    it is 0. ``study`` maps other margins (mm) to their tensors, mm2.
     """
 
     solved: CellFlow
@@ -44,7 +44,9 @@ class Permeability:
         open_ways = self.solved.flow.directions
         others = np.eye(3) - open_ways.T @ open_ways
         values, ways = np.linalg.eigh(others)
-        return [_why(name_of(way), self.solved.top) for value, way in zip(values, ways.T) if value > 0.5]
+        return [
+            _why(name_of(way), self.solved.top) for value, way in zip(values, ways.T) if value > 0.5
+        ]
 
 
 def permeability(
@@ -63,12 +65,15 @@ def permeability(
     coarse = solve(fabric, fineness.halved(fabric), top)
     values, vectors = np.linalg.eigh(solved.flow.permeability)
     principal, axes = values[::-1], vectors.T[::-1]
-    axes = axes * np.where(axes[np.arange(3), np.argmax(np.abs(axes), axis=1)] < 0, -1.0, 1.0)[:, None]
+    axes = (
+        axes * np.where(axes[np.arange(3), np.argmax(np.abs(axes), axis=1)] < 0, -1.0, 1.0)[:, None]
+    )
     principal = np.where(principal > _NONE * max(principal[0], 0.0), principal, 0.0)
 
     other = np.einsum("ni,ij,nj->n", axes, coarse.flow.permeability, axes)
     error = 100 * np.abs(np.divide(other, principal, out=np.ones(3), where=principal > 0) - 1)
     study = {}
+
     for factor in (0.5, 2.0) if margin_study else ():
         margin = Margin(factor * solved.cell.margin, is_share=False)
         flow = solve(fabric, replace(fineness, box=replace(fineness.box, margin=margin)), top).flow

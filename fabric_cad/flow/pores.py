@@ -33,19 +33,25 @@ class Pores:
     def resistance(self, cell: CompositeCell, fabric: SolvedFabric) -> np.ndarray:
         """The inverse of the permeability (elements, 3, 3), 1/mm2, of a cell's elements, 0 between the yarns.
 
-        Raises :class:`InputError` where the fibre fraction is not known, or too high for anything to flow.
+        Raises :class:`InputError` where the fibre fraction is not known, or too high for anything
+        to flow.
         """
         fractions = element_fractions(cell.mesh, fabric, self.sections)
         yarns = ~cell.in_matrix
         if np.isnan(fractions).any():
             message = "is not known, and porous yarns need it: from linear densities, or given in composite.toml"
             raise InputError(Problem(message, column="fibre_fraction", row=fabric.name))
+
         if (most := float(fractions.max())) > _DENSEST:
-            message = f"{most:.4g} is above {_DENSEST:g}: nothing flows between fibres that nearly touch"
+            message = (
+                f"{most:.4g} is above {_DENSEST:g}: nothing flows between fibres that nearly touch"
+            )
             raise InputError(Problem(message, column="fibre_fraction", row=fabric.name))
 
         tensors = np.zeros((len(fractions), 3, 3))
-        tensors[yarns] = gebart.resistance(self.diameter / 2, fractions[yarns], cell.mesh.fibre_axes()[yarns])
+        tensors[yarns] = gebart.resistance(
+            self.diameter / 2, fractions[yarns], cell.mesh.fibre_axes()[yarns]
+        )
         return tensors
 
 
@@ -55,5 +61,9 @@ def pores_of(row: Family, families: str | Path, diameter: float) -> Pores:
     Raises :class:`InputError` where that is none, or it is not known how much fibre there is.
     """
     if not (np.isfinite(diameter) and diameter > 0):
-        raise InputError(Problem(f"{diameter:g} is not above 0 and finite (micrometres)", column="fibre-diameter"))
+        raise InputError(
+            Problem(
+                f"{diameter:g} is not above 0 and finite (micrometres)", column="fibre-diameter"
+            )
+        )
     return Pores(diameter / 1000, fibre_sections(row, read_constituents(families, row.names[0])))

@@ -24,10 +24,14 @@ from ..meshing.hexahedron import CORNERS
 from ..support.arrays import read_only
 from ..support.errors import BuildError
 
-PLACES = read_only(np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)[:, ::-1])
+PLACES = read_only(
+    np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)[:, ::-1]
+)
 """Natural coordinates r, s, t of the 27 nodes, (27, 3)."""
 
-CORNER_NODES = read_only(np.array([int(np.flatnonzero((PLACES == corner).all(axis=1))[0]) for corner in CORNERS]))
+CORNER_NODES = read_only(
+    np.array([int(np.flatnonzero((PLACES == corner).all(axis=1))[0]) for corner in CORNERS])
+)
 """The nodes (8,) that are the corners, in the order of VTK and C3D8."""
 
 FACE_NODES = read_only(
@@ -43,9 +47,9 @@ _ON_FACE = 1e-7  # of a period
 class Chunk:
     """Some elements at 3 x 3 x 3 points.
 
-    ``elements`` (n,) their indices; ``values`` (n, points, 27) and ``gradients`` (n, points, 27, 3), 1/mm, of the
-    nodes' basis functions, ``linear`` (n, points, 8) and ``linear_gradients`` (n, points, 8, 3) of the corners alone;
-    ``weights`` (n, points), mm3.
+    ``elements`` (n,) their indices; ``values`` (n, points, 27) and ``gradients`` (n, points, 27,
+    3), 1/mm, of the nodes' basis functions, ``linear`` (n, points, 8) and ``linear_gradients`` (n,
+    points, 8, 3) of the corners alone; ``weights`` (n, points), mm3.
     """
 
     elements: np.ndarray
@@ -60,7 +64,8 @@ class Chunk:
 class QuadraticMesh:
     """A periodic mesh with nodes between its corners.
 
-    ``points`` (nodes, 3) mm, the corners' first, in the order of ``mesh``; ``nodes`` (elements, 27) as drawn above.
+    ``points`` (nodes, 3) mm, the corners' first, in the order of ``mesh``; ``nodes`` (elements, 27)
+    as drawn above.
     """
 
     mesh: PeriodicMesh
@@ -73,9 +78,13 @@ class QuadraticMesh:
         numbers = np.empty((len(mesh.hexahedra), 27), dtype=np.int64)
         points, count = [mesh.points], len(mesh.points)
         numbers[:, CORNER_NODES] = mesh.hexahedra
+
         for free in (1, 2, 3):  # edges, faces, middles
             own = np.flatnonzero(np.count_nonzero(PLACES == 0, axis=1) == free)
-            keys = np.stack([np.sort(mesh.hexahedra[:, _corners_around(PLACES[node])], axis=1) for node in own], axis=1)
+            keys = np.stack(
+                [np.sort(mesh.hexahedra[:, _corners_around(PLACES[node])], axis=1) for node in own],
+                axis=1,
+            )
             corners, number = np.unique(keys.reshape(-1, 2**free), axis=0, return_inverse=True)
             numbers[:, own] = count + number.reshape(-1, len(own))
             points.append(mesh.points[corners].mean(axis=1))
@@ -108,7 +117,9 @@ class QuadraticMesh:
     def folded(self) -> np.ndarray:
         """Indices of the hexahedra whose volume is not positive everywhere, as seen from 3 x 3 x 3 points."""
         skfem = _scikit_fem()
-        points = skfem.CellBasis(self._skfem, skfem.ElementHex1(), intorder=5, elements=[0], disable_doflocs=True).X
+        points = skfem.CellBasis(
+            self._skfem, skfem.ElementHex1(), intorder=5, elements=[0], disable_doflocs=True
+        ).X
         return np.flatnonzero(~(self._mapping().detDF(points) > 0).all(axis=1))
 
     def chunks(self) -> Iterator[Chunk]:
@@ -116,20 +127,30 @@ class QuadraticMesh:
         skfem, order = _scikit_fem(), _from_skfem()
         back = np.argsort(order)
         to_corner = [int(np.flatnonzero(order[:8] == node)[0]) for node in CORNER_NODES]
+
         for start in range(0, len(self.nodes), _CHUNK):
             elements = np.arange(start, min(start + _CHUNK, len(self.nodes)))
-            options = {"mapping": self._mapping(), "intorder": 5, "elements": elements, "disable_doflocs": True}
+            options = {
+                "mapping": self._mapping(),
+                "intorder": 5,
+                "elements": elements,
+                "disable_doflocs": True,
+            }
             basis = skfem.CellBasis(self._skfem, skfem.ElementHex2(), **options)
             linear = skfem.CellBasis(self._skfem, skfem.ElementHex1(), **options)
             if not (options["mapping"].detDF(basis.X, tind=elements) > 0).all():
-                raise BuildError("a hexahedron of the space between the yarns is folded over; ask for a finer mesh")
+                raise BuildError(
+                    "a hexahedron of the space between the yarns is folded over; ask for a finer mesh"
+                )
 
             shape = (len(elements), basis.X.shape[-1])
             yield Chunk(
                 elements,
                 np.stack([np.broadcast_to(basis.basis[node][0], shape) for node in back], axis=-1),
                 np.stack([basis.basis[node][0].grad for node in back]).transpose(2, 3, 0, 1),
-                np.stack([np.broadcast_to(linear.basis[node][0], shape) for node in to_corner], axis=-1),
+                np.stack(
+                    [np.broadcast_to(linear.basis[node][0], shape) for node in to_corner], axis=-1
+                ),
                 np.stack([linear.basis[node][0].grad for node in to_corner]).transpose(2, 3, 0, 1),
                 basis.dx,
             )
@@ -139,14 +160,19 @@ class QuadraticMesh:
         """The mesh as scikit-fem takes it; that numbers edges and faces itself."""
         skfem, order = _scikit_fem(), _from_skfem()
         corners = np.ascontiguousarray(self.nodes[:, order[:8]].T.astype(np.int32))
-        plain = skfem.MeshHex1(np.ascontiguousarray(self.mesh.points.T), corners, sort_t=False, validate=False)
+        plain = skfem.MeshHex1(
+            np.ascontiguousarray(self.mesh.points.T), corners, sort_t=False, validate=False
+        )
         theirs = skfem.Dofs(plain, skfem.ElementHex2()).element_dofs
         places = np.empty((3, theirs.max() + 1))
         places[:, theirs] = self.points[self.nodes[:, order].T].transpose(2, 0, 1)
         return skfem.MeshHex2(places, corners, sort_t=False, validate=False)
 
     def _mapping(self):
-        """From natural coordinates to places; it keeps what it is asked for, so that one serves one chunk."""
+        """From natural coordinates to places.
+
+        It keeps what it is asked for, so that one serves one chunk.
+        """
         skfem = _scikit_fem()
         return skfem.MappingIsoparametric(self._skfem, skfem.ElementHex2(), skfem.ElementQuad2())
 

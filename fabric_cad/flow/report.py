@@ -1,4 +1,7 @@
-"""What a permeability says: its report as a value, which is a dict when it is written; its table; its summary."""
+"""What a permeability says: its report as a value, which is a dict when it is written; its table.
+
+Its summary.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,8 @@ _WIDE_BAR = 5.0  # per cent
 class PermeabilityReport:
     """The content of ``permeability.json``; fields are called as its keys, which hold plain numbers, lists and texts.
 
-    ``axes`` are the principal axes as rows; ``error_bar_percent`` is the largest of ``checks["error_percent"]``.
+    ``axes`` are the principal axes as rows; ``error_bar_percent`` is the largest of
+    ``checks["error_percent"]``.
     """
 
     row: str
@@ -53,7 +57,9 @@ class PermeabilityReport:
         return found | found.pop("origin")
 
 
-def permeability_report(row: Family, solved: Permeability, seconds: Mapping[str, float]) -> PermeabilityReport:
+def permeability_report(
+    row: Family, solved: Permeability, seconds: Mapping[str, float]
+) -> PermeabilityReport:
     """The report of a table of one row; ``seconds`` by stage."""
     flow = solved.solved.flow
     return PermeabilityReport(
@@ -63,11 +69,15 @@ def permeability_report(row: Family, solved: Permeability, seconds: Mapping[str,
         axes=solved.axes.tolist(),
         margin_mm=solved.solved.cell.margin,
         yarns="rigid" if solved.solved.pores is None else "porous",
-        fibre_diameter_um=None if solved.solved.pores is None else 1000 * solved.solved.pores.diameter,
+        fibre_diameter_um=None
+        if solved.solved.pores is None
+        else 1000 * solved.solved.pores.diameter,
         top=str(solved.solved.top),
         error_bar_percent=float(solved.error.max()),
         closed=solved.closed,
-        margin_study=[{"margin_mm": m, "K_mm2": tensor.tolist()} for m, tensor in sorted(solved.study.items())],
+        margin_study=[
+            {"margin_mm": m, "K_mm2": tensor.tolist()} for m, tensor in sorted(solved.study.items())
+        ],
         checks={
             "error_percent": solved.error.tolist(),
             "dissipation_less_work": flow.work,
@@ -84,10 +94,17 @@ def permeability_report(row: Family, solved: Permeability, seconds: Mapping[str,
 
 def write_table(report: PermeabilityReport, path: Path) -> None:
     """The tensor, principal values and what they hold for as CSV: quantity, value, unit."""
-    lines = [(f"K_{a}{b}", report.K_mm2[i][j], "mm2") for i, a in enumerate(_NAMES) for j, b in enumerate(_NAMES)]
-    lines += [(f"K_{number}", value, "mm2") for number, value in enumerate(report.principal_mm2, start=1)]
+    lines = [
+        (f"K_{a}{b}", report.K_mm2[i][j], "mm2")
+        for i, a in enumerate(_NAMES)
+        for j, b in enumerate(_NAMES)
+    ]
+    lines += [
+        (f"K_{number}", value, "mm2") for number, value in enumerate(report.principal_mm2, start=1)
+    ]
     lines += [("margin", report.margin_mm, "mm"), ("error_bar", report.error_bar_percent, "%")]
     lines.append(("porosity", report.mesh["fine"]["porosity"], ""))
+
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("quantity", "value", "unit"))
@@ -106,12 +123,20 @@ def summary(report: PermeabilityReport) -> str:
         f"  holds for       a clearance of {report.margin_mm:.4g} mm, {report.top}",
         f"  error bar       {report.error_bar_percent:.2g} % (against a coarser mesh)",
     ]
+
     for other in report.margin_study:
         x, y, z = (other["K_mm2"][i][i] for i in range(3))
-        lines.append(f"  at {other['margin_mm']:.4g} mm".ljust(18) + f"Kx {x:.4g}, Ky {y:.4g}, Kz {z:.4g} mm2")
+        lines.append(
+            f"  at {other['margin_mm']:.4g} mm".ljust(18)
+            + f"Kx {x:.4g}, Ky {y:.4g}, Kz {z:.4g} mm2"
+        )
+
     lines += [f"  {sentence}" for sentence in report.closed]
-    lines.append(f"  solver          {solver['iterations']} iterations, residual {solver['residual']:.1e}")
+    lines.append(
+        f"  solver          {solver['iterations']} iterations, residual {solver['residual']:.1e}"
+    )
     lines.append(f"  seconds         {sum(report.seconds.values()):.1f}")
+
     return "\n".join(lines)
 
 

@@ -41,22 +41,28 @@ def make_permeability(
 ) -> PermeabilityReport:
     """Solve the flow through the cell of a table of one row; files in ``out/<row name>``, the report is returned.
 
-    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`, ``layers`` of ``grading``
-    lie between the yarns and the box; with a ``fibre_diameter`` (micrometres) the yarns are porous, their fibre
-    fraction as the ``composite.toml`` in ``families`` or the row's linear densities say; with ``margin_study`` the
-    tensor at half and twice the margin is there too.
-    Raises :class:`FabricCadError`; earlier results are then as they were.
+    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`,
+    ``layers`` of ``grading`` lie between the yarns and the box; with a ``fibre_diameter``
+    (micrometres) the yarns are porous, their fibre fraction as the ``composite.toml`` in
+    ``families`` or the row's linear densities say; with ``margin_study`` the tensor at half and
+    twice the margin is there too. Raises :class:`FabricCadError`; earlier results are then as they
+    were.
     """
     expect_row(row)
     stages = stages or Stages()
     (name,) = row.names
+
     with staged(Path(out) / name, renew_digests) as folder:
         with stages("identify"):
             fabric = identify(row)[name]
             pores = None if fibre_diameter is None else pores_of(row, families, fibre_diameter)
-            fine = fineness(fabric, mesh or {}, top=top, margin=margin, layers=layers, grading=grading)
+            fine = fineness(
+                fabric, mesh or {}, top=top, margin=margin, layers=layers, grading=grading
+            )
 
-        solved = permeability(fabric, fine, _told(stages, pores), top=top, margin_study=margin_study)
+        solved = permeability(
+            fabric, fine, _told(stages, pores), top=top, margin_study=margin_study
+        )
         _write(solved, folder, stages)
         report = permeability_report(row, solved, stages.seconds)
         write_table(report, folder / f"{NAME}.csv")

@@ -20,8 +20,9 @@ _ON_FACE = 1e-7  # of the cell's height
 class Top(StrEnum):
     """What lies above and below the cell.
 
-    ``periodic``: the same cell, layer upon layer in phase; ``plates``: rigid plates; ``open``: a plate below, above
-    a level surface without friction (free, or the mirror plane between two layers).
+    ``periodic``: the same cell, layer upon layer in phase; ``plates``: rigid plates; ``open``: a
+    plate below, above a level surface without friction (free, or the mirror plane between two
+    layers).
     """
 
     PERIODIC = "periodic"
@@ -39,7 +40,9 @@ def whole_space(cell: CompositeCell, fabric: SolvedFabric, top: Top) -> Quadrati
     return _space(cell, fabric, top, np.ones(len(cell.mesh.hexahedra), dtype=bool))
 
 
-def _space(cell: CompositeCell, fabric: SolvedFabric, top: Top, chosen: np.ndarray) -> QuadraticMesh:
+def _space(
+    cell: CompositeCell, fabric: SolvedFabric, top: Top, chosen: np.ndarray
+) -> QuadraticMesh:
     used, corners = np.unique(cell.mesh.hexahedra[chosen], return_inverse=True)
     number = np.full(len(cell.mesh.points), -1)
     number[used] = np.arange(len(used))
@@ -51,7 +54,9 @@ def _space(cell: CompositeCell, fabric: SolvedFabric, top: Top, chosen: np.ndarr
     mesh = PeriodicMesh(cell.mesh.points[used], corners.reshape(-1, 8), vectors, origin, periodic)
 
     yarns = swept_yarns(fabric)
-    skins = [Skin(yarn, number[cell.mesh.quads_of(yarn.yarn.body, SurfaceKind.MATRIX)]) for yarn in yarns]
+    skins = [
+        Skin(yarn, number[cell.mesh.quads_of(yarn.yarn.body, SurfaceKind.MATRIX)]) for yarn in yarns
+    ]
     return curved(QuadraticMesh.straight(mesh), fabric, skins, cell.shift)
 
 

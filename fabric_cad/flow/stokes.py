@@ -28,10 +28,11 @@ TOLERANCE = 1e-5
 class Flow:
     """Flow under unit pressure gradients along ``directions`` (directions, 3).
 
-    ``velocity`` (nodes, 3, directions), mm2, and ``pressure`` (corners, directions), mm, in the numbers of
-    the equations, per unit of gradient over viscosity; ``permeability`` (3, 3), mm2. ``work``, by how much dissipation
-    and work differ, and ``divergence``, the root mean square of the volume made over that of velocity gradients: both
-    the largest of a direction; ``iterations`` and ``residual`` of the solution.
+    ``velocity`` (nodes, 3, directions), mm2, and ``pressure`` (corners, directions), mm, in the
+    numbers of the equations, per unit of gradient over viscosity; ``permeability`` (3, 3), mm2.
+    ``work``, by how much dissipation and work differ, and ``divergence``, the root mean square of
+    the volume made over that of velocity gradients: both the largest of a direction; ``iterations``
+    and ``residual`` of the solution.
     """
 
     directions: np.ndarray
@@ -44,7 +45,9 @@ class Flow:
     residual: float
 
 
-def stokes_flow(equations: Equations, directions: np.ndarray, volume: float, tolerance: float = TOLERANCE) -> Flow:
+def stokes_flow(
+    equations: Equations, directions: np.ndarray, volume: float, tolerance: float = TOLERANCE
+) -> Flow:
     """The flow along ``directions`` (directions, 3), orthonormal, in a cell of ``volume`` (mm3, solids included).
 
     Raises :class:`~fabric_cad.support.errors.SolverError` where the equations are not solved.
@@ -68,9 +71,13 @@ def stokes_flow(equations: Equations, directions: np.ndarray, volume: float, tol
     def precondition(values: np.ndarray) -> np.ndarray:
         moved = values[: 3 * nodes].reshape(nodes, 3, count) * free
         for components, inverse in inverses:
-            moved[:, components] = (inverse @ moved[:, components].reshape(nodes, -1)).reshape(nodes, -1, count)
+            moved[:, components] = (inverse @ moved[:, components].reshape(nodes, -1)).reshape(
+                nodes, -1, count
+            )
         moved *= free
-        pressure = values[3 * nodes :] / equations.masses[:, None] + through_pores(values[3 * nodes :])
+        pressure = values[3 * nodes :] / equations.masses[:, None] + through_pores(
+            values[3 * nodes :]
+        )
         pressure -= equations.masses @ pressure / equations.masses.sum()  # its mean means nothing
         return np.concatenate([moved.reshape(-1, count), pressure])
 
@@ -124,6 +131,7 @@ def _inverses(equations: Equations) -> list[tuple[list[int], csr_array]]:
     """Velocity's components that are held at the same nodes, and the Laplacian of all others inverted on lines."""
     free = equations.free
     groups: list[list[int]] = []
+
     for component in range(3):
         alike = [group for group in groups if np.array_equal(free[:, group[0]], free[:, component])]
         same = [] if equations.drag else alike
@@ -134,7 +142,13 @@ def _inverses(equations: Equations) -> list[tuple[list[int], csr_array]]:
 
     alone = equations.line.max() + 1 + np.arange(len(free))  # a held node stands on no line
     return [
-        (group, line_inverse(_diagonal_block(equations, group[0]), np.where(free[:, group[0]], equations.line, alone)))
+        (
+            group,
+            line_inverse(
+                _diagonal_block(equations, group[0]),
+                np.where(free[:, group[0]], equations.line, alone),
+            ),
+        )
         for group in groups
     ]
 

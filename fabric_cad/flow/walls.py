@@ -1,7 +1,8 @@
 """Nodes between corners put on the yarns' exact faces, and layers that follow them.
 
-The faces are evaluated in closed form; what is added to a node midway is by how much the face is higher there than
-the mean of its values at the corners, fading along the vertical line to nothing at the box::
+The faces are evaluated in closed form; what is added to a node midway is by how much the face is
+higher there than the mean of its values at the corners, fading along the vertical line to nothing
+at the box::
 
     ---- +H/2 ----------- 0
      .   .   .
@@ -23,7 +24,13 @@ from .quadratic import FACE_NODES, QuadraticMesh
 _ON_FACE = 0.02  # of a yarn's thickness: corners nearer than this to a face are on it
 _TURNS = 4
 _CORNERS = [0, 2, 6, 8]  # among a face's nine nodes
-_BETWEEN = {1: [0, 2], 3: [0, 6], 5: [2, 8], 7: [6, 8], 4: _CORNERS}  # and those between which the others lie
+_BETWEEN = {
+    1: [0, 2],
+    3: [0, 6],
+    5: [2, 8],
+    7: [6, 8],
+    4: _CORNERS,
+}  # and those between which the others lie
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +41,9 @@ class Skin:
     quads: np.ndarray
 
 
-def curved(mesh: QuadraticMesh, fabric: SolvedFabric, skins: list[Skin], shift: float) -> QuadraticMesh:
+def curved(
+    mesh: QuadraticMesh, fabric: SolvedFabric, skins: list[Skin], shift: float
+) -> QuadraticMesh:
     """The mesh with the nodes of its ``skins`` on the yarns' faces, which were moved up by ``shift``, mm.
 
     Sides of yarns that stand upright stay as they are.
@@ -43,6 +52,7 @@ def curved(mesh: QuadraticMesh, fabric: SolvedFabric, skins: list[Skin], shift: 
     faces = mesh.nodes[:, FACE_NODES].reshape(-1, 9)
     corners = np.sort(faces[:, _CORNERS], axis=1)
     rise, on_skin = np.zeros(len(places)), np.zeros(len(places), dtype=bool)
+
     for skin in skins:
         own = faces[_among(corners, np.sort(skin.quads, axis=1))]
         face = _face_heights(skin.swept, places[own], shift)
@@ -60,10 +70,13 @@ def _same_by_a_period(mesh: QuadraticMesh, rise: np.ndarray) -> np.ndarray:
     return (totals / np.bincount(mesh.unknowns))[mesh.unknowns]
 
 
-def _unfolded(mesh: QuadraticMesh, places: np.ndarray, rise: np.ndarray, on_skin: np.ndarray) -> QuadraticMesh:
+def _unfolded(
+    mesh: QuadraticMesh, places: np.ndarray, rise: np.ndarray, on_skin: np.ndarray
+) -> QuadraticMesh:
     """The mesh raised, but for hexahedra that would fold over: those stay midway, at last with their lines."""
     line = lines_of(vertical_links(mesh), len(places))
     kept = np.ones(len(rise), dtype=bool)
+
     for turn in range(2 * _TURNS):
         moved = np.zeros_like(mesh.points)
         moved[:, 2] = kept * _same_by_a_period(mesh, _faded(line, places, rise, on_skin))
@@ -79,6 +92,7 @@ def _unfolded(mesh: QuadraticMesh, places: np.ndarray, rise: np.ndarray, on_skin
             upright = np.ones(len(rise), dtype=bool)
             upright[line[~kept]] = False
             rise = np.where(upright[line], rise, 0.0)
+
     return raised
 
 
@@ -96,7 +110,10 @@ def _face_heights(swept: SweptYarn, places: np.ndarray, shift: float) -> np.ndar
     along, row = np.unique(np.round(places[..., axis], 9), return_inverse=True)
     across, column = np.unique(away, return_inverse=True)
     shape = places.shape[:2]
-    both = np.stack(heights(swept, along, across))[:, row.reshape(shape), column.reshape(shape)] + shift
+    both = (
+        np.stack(heights(swept, along, across))[:, row.reshape(shape), column.reshape(shape)]
+        + shift
+    )
 
     off = np.abs(both - places[..., 2])[:, :, _CORNERS].max(axis=2)
     off = np.where(np.isnan(off), np.inf, off)
@@ -104,13 +121,18 @@ def _face_heights(swept: SweptYarn, places: np.ndarray, shift: float) -> np.ndar
     return np.where((off.min(axis=0) <= _ON_FACE * solved.thickness)[:, None], nearest, np.nan)
 
 
-def _faded(line: np.ndarray, places: np.ndarray, rise: np.ndarray, on_skin: np.ndarray) -> np.ndarray:
+def _faded(
+    line: np.ndarray, places: np.ndarray, rise: np.ndarray, on_skin: np.ndarray
+) -> np.ndarray:
     """What (nodes,) every node rises: ``rise`` on skins, linear between a line's outermost, fading from those on."""
     height = places[:, 2]
     skin = np.flatnonzero(on_skin)
     skin = skin[np.lexsort((height[skin], line[skin]))]
     low, high = np.full(line.max() + 1, -1), np.full(line.max() + 1, -1)
-    high[line[skin]], low[line[skin[::-1]]] = skin, skin[::-1]  # the last one written is a line's outermost
+    high[line[skin]], low[line[skin[::-1]]] = (
+        skin,
+        skin[::-1],
+    )  # the last one written is a line's outermost
     floor, ceiling = np.full(line.max() + 1, np.inf), np.full(line.max() + 1, -np.inf)
     np.minimum.at(floor, line, height)
     np.maximum.at(ceiling, line, height)
@@ -121,8 +143,10 @@ def _faded(line: np.ndarray, places: np.ndarray, rise: np.ndarray, on_skin: np.n
     z, lower, upper = height[others], height[low[own]], height[high[own]]
     ends = [floor[own], lower, upper, ceiling[own]]
     values = [np.zeros(len(own)), rise[low[own]], rise[high[own]], np.zeros(len(own))]
+
     for i in range(3):
         within = (z >= ends[i]) & (z <= ends[i + 1]) & (ends[i + 1] > ends[i])
         share = (z - ends[i])[within] / (ends[i + 1] - ends[i])[within]
         risen[others[within]] = values[i][within] * (1 - share) + values[i + 1][within] * share
+
     return risen

@@ -129,6 +129,7 @@ def woven(
     for yarn in yarns_of(np.asarray(weft_over_warp)):
         swept = SweptYarn(fabric, yarn)
         solids[yarn.name] = sweep(swept.trajectory, _sections(swept, section), lattice)
+
     return assemble(solids, fabric.name)
 
 

@@ -42,7 +42,10 @@ def _no_number(text: str, column: str, separator: str) -> str:
 
 
 def sheet_fault(record: Record, place: int, column: str, text: str) -> str | None:
-    """Why a workbook's cell, number ``place`` of its line, is refused for what it is; None in a text table."""
+    """Why a workbook's cell, number ``place`` of its line, is refused for what it is.
+
+    None in a text table.
+    """
     fault = record.faults.get(place)
     if column in FREE_TEXTS:
         return None if text else fault  # a date is as good a note as any
@@ -54,6 +57,7 @@ def sheet_fault(record: Record, place: int, column: str, text: str) -> str | Non
             "the cell has the format percent, in which 0.4 % is the number 0.004, and its column counts in "
             "percent already; give it the format number, and enter it again"
         )
+
     return fault or record.merged.get(place)
 
 

@@ -31,7 +31,9 @@ class Column:
     unit: str
     bound: Bound = ABOVE_0
     per_direction: bool = False
-    others: tuple[tuple[str, str, float], ...] = field(default=(), repr=False)  # (name, unit, factor to the kept)
+    others: tuple[tuple[str, str, float], ...] = field(
+        default=(), repr=False
+    )  # (name, unit, factor to the kept)
     kept: str = ""
     factor: float = 1.0
 
@@ -48,7 +50,9 @@ class Column:
 
     def of_std(self) -> Column:
         """The column of its standard deviation, which may be 0."""
-        return replace(self, name=f"{self.name}_std", kept=f"{self.kept}_std", bound=NOT_BELOW_0, others=())
+        return replace(
+            self, name=f"{self.name}_std", kept=f"{self.kept}_std", bound=NOT_BELOW_0, others=()
+        )
 
 
 _PER_CM_AND_INCH = (("density_per_cm", "1/cm", 0.1), ("density_per_inch", "1/inch", 1 / 25.4))
@@ -93,7 +97,11 @@ MEASURED = tuple(column.name for column in _VALUES if column.kept == column.name
 
 STD = tuple(f"{name}_std" for name in MEASURED)
 
-OTHER_UNITS = {column.name: (column.kept, column.factor) for column in NUMBERS.values() if column.kept != column.name}
+OTHER_UNITS = {
+    column.name: (column.kept, column.factor)
+    for column in NUMBERS.values()
+    if column.kept != column.name
+}
 """Columns in other units: the column a quantity is kept in, and the factor to its unit."""
 
 FREE_TEXTS = ("source", "notes")
@@ -121,7 +129,9 @@ WEAVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
 """Columns of a family's weave: whole numbers, or the pattern as a text."""
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,79}")
-_RESERVED = {"families", "con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in range(10)}
+_RESERVED = {"families", "con", "prn", "aux", "nul"} | {
+    f"{port}{n}" for port in ("com", "lpt") for n in range(10)
+}
 
 
 def is_safe_name(name: str) -> bool:

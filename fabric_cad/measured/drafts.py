@@ -1,7 +1,8 @@
 """Files of weaving drafts (.wif, Weaving Information File 1.1): sections of keys, each with its line.
 
 Drafts come from many programs and say the same in many ways. What relates to the weave and its
-densities is read strictly; titles, notes, colours and sections of a program's own hold whatever they like.
+densities is read strictly; titles, notes, colours and sections of a program's own hold whatever
+they like.
 """
 
 from __future__ import annotations
@@ -37,7 +38,10 @@ class Entry:
 
 @dataclass(frozen=True)
 class Draft:
-    """A draft's sections that are :data:`READ`, names and keys in lower case; ``lines`` has their headers."""
+    """A draft's sections that are :data:`READ`, names and keys in lower case.
+
+    ``lines`` has their headers.
+    """
 
     path: str
     sections: Mapping[str, Mapping[str, Entry]]
@@ -56,8 +60,14 @@ class Draft:
         return entry.text if entry else ""
 
     def key(self, section: str, number: int) -> str:
-        """The key of a section that is this number, however it is written; empty where there is none."""
-        return next((key for key in self.sections.get(section, {}) if key.isdigit() and int(key) == number), "")
+        """The key of a section that is this number, however it is written.
+
+        Empty where there is none.
+        """
+        return next(
+            (key for key in self.sections.get(section, {}) if key.isdigit() and int(key) == number),
+            "",
+        )
 
     def count(self, section: str, key: str, most: int) -> int | None:
         """A number from 1 to ``most``; None where it is missing, empty or 0."""
@@ -73,44 +83,57 @@ class Draft:
         """True or False, None where the draft does not say."""
         text = self.entry(section, key).lower()
         if text not in ("", *_TRUE, *_FALSE):
-            raise self.wrong(f"{quoted(self.entry(section, key))} is neither true nor false", section, key)
+            raise self.wrong(
+                f"{quoted(self.entry(section, key))} is neither true nor false", section, key
+            )
         return text in _TRUE if text else None
 
     def measure(self, section: str, key: str) -> float | None:
-        """A number above 0, with a point or a decimal comma; None where it is missing, empty or 0."""
+        """A number above 0, with a point or a decimal comma.
+
+        None where it is missing, empty or 0.
+        """
         text = self.entry(section, key)
         if text and not re.fullmatch(r"[0-9]{1,9}([.,][0-9]*)?|[.,][0-9]+", text):
             raise self.wrong(f"{quoted(text)} is not a number above 0", section, key)
         return float(text.replace(",", ".")) or None if text else None
 
     def numbered(self, section: str) -> dict[int, frozenset[int]]:
-        """The numbers of every thread, pick or treadle that a section lists; 0 and nothing at all mean none."""
+        """The numbers of every thread, pick or treadle that a section lists.
+
+        0 and nothing at all mean none.
+        """
         found: dict[int, frozenset[int]] = {}
         for key, entry in self.sections.get(section, {}).items():
             if not re.fullmatch(rf"[0-9]{{1,{_MOST_DIGITS}}}", key):
                 raise self.wrong("this key is not a number", section, key)
             pieces = [piece.strip() for piece in entry.text.split(",")]
             if not all(re.fullmatch(rf"[0-9]{{0,{_MOST_DIGITS}}}", piece) for piece in pieces):
-                raise self.wrong(f"{quoted(entry.text)} is not a list of whole numbers", section, key)
+                raise self.wrong(
+                    f"{quoted(entry.text)} is not a list of whole numbers", section, key
+                )
+
             numbers = frozenset(int(piece) for piece in pieces if piece) - {0}
             if int(key) in found and found[int(key)] != numbers:
                 raise self.wrong("this key stands twice", section, key)
             if int(key) == 0 and numbers:
                 raise self.wrong("numbers count from 1", section, key)
             found[int(key)] = numbers
+
         return {number: numbers for number, numbers in found.items() if number}
 
 
 def read_draft(path: Path) -> Draft:
     """Read the sections of a draft's file.
 
-    Text is UTF-8, UTF-16 with its mark, or else Windows' code page 1252. Lines that start with ``;`` are
-    comments. A section or key may stand twice where both say the same, or one says nothing. Raises
-    :class:`InputError` with the line of what is not of this form.
+    Text is UTF-8, UTF-16 with its mark, or else Windows' code page 1252. Lines that start with
+    ``;`` are comments. A section or key may stand twice where both say the same, or one says
+    nothing. Raises :class:`InputError` with the line of what is not of this form.
     """
     sections: dict[str, dict[str, Entry]] = {}
     headers: dict[str, int] = {}
     section = None
+
     for line, text in _lines(path):
         if header := _HEADER.fullmatch(text):
             section = " ".join(header[1].lower().split())
@@ -121,8 +144,10 @@ def read_draft(path: Path) -> Draft:
             raise InputError(Problem(message, str(path), line))
         elif section in READ:
             _add(sections[section], text, Problem("", str(path), line, f"[{section.upper()}]"))
+
     if "wif" not in headers:
         raise InputError(Problem("not a weaving draft: it has no section [WIF]", str(path)))
+
     return Draft(str(path), {name: sections[name] for name in sections if name in READ}, headers)
 
 
@@ -145,7 +170,9 @@ def _add(entries: dict[str, Entry], text: str, place: Problem) -> None:
     key, equals, value = (part.strip() for part in text.partition("="))
     key, value = " ".join(key.lower().split()), re.sub(r"\s+;.*", "", value)
     if not (equals and key):
-        raise InputError(Problem("not a line of the form KEY=VALUE", place.path, place.line, place.column))
+        raise InputError(
+            Problem("not a line of the form KEY=VALUE", place.path, place.line, place.column)
+        )
     before = entries.get(key)
     if before and before.text and value and before.text.lower() != value.lower():
         message = f"this key stands twice, at line {before.line} as {quoted(before.text)}"

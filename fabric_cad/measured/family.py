@@ -7,7 +7,15 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from ..support.errors import ArgumentError, InputError, Place, Problem, UnknownRowError, did_you_mean, expect
+from ..support.errors import (
+    ArgumentError,
+    InputError,
+    Place,
+    Problem,
+    UnknownRowError,
+    did_you_mean,
+    expect,
+)
 from ..weave.weaves import Weave
 from .columns import PER_DIRECTION
 
@@ -18,11 +26,11 @@ __all__ = ["Family", "expect_row"]
 class Family:
     """The rows of one family table, as measured; every array has shape (rows,).
 
-    ``measured`` maps each name of :data:`~fabric_cad.measured.columns.MEASURED` to an array in mm, 1/mm, tex, g/cm3 or
-    (crimp) a plain ratio, NaN where the cell was empty; ``scatter`` maps the same names to
-    the standard deviations of the ``*_std`` columns, in the same units. ``place`` is the file,
-    and ``lines`` are the rows' lines in it, None where there is no file. ``refused`` is what is
-    wrong with rows of the file that are not among these
+    ``measured`` maps each name of :data:`~fabric_cad.measured.columns.MEASURED` to an array in mm,
+    1/mm, tex, g/cm3 or (crimp) a plain ratio, NaN where the cell was empty; ``scatter`` maps the
+    same names to the standard deviations of the ``*_std`` columns, in the same units. ``place`` is
+    the file, and ``lines`` are the rows' lines in it, None where there is no file. ``refused`` is
+    what is wrong with rows of the file that are not among these
     (:func:`~fabric_cad.measured.tables.read_family` with ``partial``).
 
     ``table[name]`` is the table of that one row, ``name in table`` whether there is one,
@@ -59,12 +67,17 @@ class Family:
         with its problems where the row is refused.
         """
         if not isinstance(name, str):
-            raise ArgumentError(f"a row of a table is named by a text, not {type(name).__name__} {name!r:.60}")
+            raise ArgumentError(
+                f"a row of a table is named by a text, not {type(name).__name__} {name!r:.60}"
+            )
+
         if name in self.names:
             return self.take([self.names.index(name)])
         if problems := self.problems_of(name):
             raise InputError(problems)
-        raise UnknownRowError(self.place.problem(f"no row is called {name!r}{did_you_mean(name, self.names)}"))
+        raise UnknownRowError(
+            self.place.problem(f"no row is called {name!r}{did_you_mean(name, self.names)}")
+        )
 
     @property
     def path(self) -> str | None:
@@ -72,7 +85,10 @@ class Family:
         return self.place.path
 
     def problems_of(self, name: str) -> list[Problem]:
-        """What is wrong with the refused row of that name; capitals make no difference, as for files."""
+        """What is wrong with the refused row of that name.
+
+        Capitals make no difference, as for files.
+        """
         return [problem for problem in self.refused if (problem.row or "").lower() == name.lower()]
 
     def take(self, rows: Sequence[int] | np.ndarray) -> Family:
@@ -107,4 +123,6 @@ def expect_row(row: Family, name: str = "row") -> None:
     """Raise :class:`ArgumentError` where an argument is no table of one row."""
     expect(row, Family, name, " of one row (table['name'] gives one)")
     if len(row) != 1:
-        raise ArgumentError(f"{name}: expected a table of one row (table['name'] gives one), got {len(row)} rows")
+        raise ArgumentError(
+            f"{name}: expected a table of one row (table['name'] gives one), got {len(row)} rows"
+        )

@@ -29,14 +29,19 @@ def read_header(family: str, records: Records) -> tuple[list[str], Place]:
     return header, place
 
 
-def _header_problems(family: str, header: Sequence[str], place: Place, line: int | None) -> list[Problem]:
+def _header_problems(
+    family: str, header: Sequence[str], place: Place, line: int | None
+) -> list[Problem]:
     """What is wrong with a header: unknown, repeated and missing columns."""
     known = known_columns(family)
     problems = []
+
     for column in header:
         if column not in known:
             hint = did_you_mean(column.lower(), known, cutoff=0.3)
-            problems.append(place.problem(f"unknown column of {family}.csv{hint}", line, column or "(empty)"))
+            problems.append(
+                place.problem(f"unknown column of {family}.csv{hint}", line, column or "(empty)")
+            )
         elif header.count(column) > 1:
             problems.append(place.problem("this column stands twice in the header", line, column))
 
@@ -44,6 +49,7 @@ def _header_problems(family: str, header: Sequence[str], place: Place, line: int
         written = [column, *(other for other, (kept, _) in OTHER_UNITS.items() if kept == column)]
         if not any(name in header for name in written):
             problems.append(place.problem("this column is missing", line, column))
+
     return list(dict.fromkeys(problems))
 
 
@@ -54,5 +60,9 @@ def _with_letters(place: Place, header: Sequence[str]) -> Place:
     from .workbooks import letters_of
 
     letters = {column: letters_of(number) for number, column in enumerate(header)}
-    kept = {OTHER_UNITS[column][0]: letter for column, letter in letters.items() if column in OTHER_UNITS}
+    kept = {
+        OTHER_UNITS[column][0]: letter
+        for column, letter in letters.items()
+        if column in OTHER_UNITS
+    }
     return replace(place, letters=kept | letters)

@@ -44,6 +44,7 @@ def _column(table: TextRows, column: str) -> np.ndarray:
     for row, message in BOUNDS[column].faults(rows, written.__getitem__):
         table.refusals.add(row, Step.CELL, message, column)
         numbers[row] = np.nan
+
     return numbers
 
 

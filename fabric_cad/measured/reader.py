@@ -1,7 +1,7 @@
 """From the lines of a family table to its values, or to all that is wrong with them.
 
-Texts are read cell by cell (:mod:`~fabric_cad.measured.cells`), and what they say is held against the rules
-of a row (:mod:`~fabric_cad.measured.rules`) for all rows at once.
+Texts are read cell by cell (:mod:`~fabric_cad.measured.cells`), and what they say is held against
+the rules of a row (:mod:`~fabric_cad.measured.rules`) for all rows at once.
 """
 
 from __future__ import annotations
@@ -31,7 +31,10 @@ def table_of(family: str, records: Records) -> Family:
 def read_rows(
     family: str, header: Sequence[str], place: Place, records: Sequence[Record], separator: str = ""
 ) -> Family:
-    """The table of the lines under a header; what is wrong with those left out is in its ``refused``."""
+    """The table of the lines under a header.
+
+    What is wrong with those left out is in its ``refused``.
+    """
     blank = [""] * len(header)
     cells = [dict(zip(header, [*record.cells, *blank])) for record in records]
     names = [row["name"] for row in cells]
@@ -40,14 +43,19 @@ def read_rows(
     for row, record in enumerate(records):
         if fault := width_fault(record, header, separator):
             refusals.close(row, fault)
+
     _check_names(names, records, refusals)
 
-    sound = [_without_sheet_faults(row, record, cells[row], refusals) for row, record in enumerate(records)]
+    sound = [
+        _without_sheet_faults(row, record, cells[row], refusals)
+        for row, record in enumerate(records)
+    ]
     table = TextRows(header, separator, sound, refusals)
     values = read_numbers(table)
     weaves = read_weave_cells(family, table)
     _check_choices(table)
     check_relations(table, values)
+
     return _sound_rows(family, table, values, weaves)
 
 
@@ -68,11 +76,16 @@ def _check_names(names: Sequence[str], records: Sequence[Record], refusals: Refu
             )
             refusals.add(row, Step.NAME, message, "name", named=False)
         elif name.lower() in seen:
-            refusals.add(row, Step.NAME, f"this row name is also at {word} {seen[name.lower()]}", "name")
+            refusals.add(
+                row, Step.NAME, f"this row name is also at {word} {seen[name.lower()]}", "name"
+            )
+
         seen.setdefault(name.lower(), record.line)
 
 
-def _without_sheet_faults(row: int, record: Record, cells: Mapping[str, str], refusals: Refusals) -> Texts:
+def _without_sheet_faults(
+    row: int, record: Record, cells: Mapping[str, str], refusals: Refusals
+) -> Texts:
     """The texts of a row, None in place of a cell of a workbook that is refused for what it is."""
     texts: Texts = dict(cells)
     for place, column in enumerate(cells):
@@ -90,11 +103,15 @@ def _check_choices(table: TextRows) -> None:
                 table.refusals.add(row, Step.CHOICE, message, column)
 
 
-def _sound_rows(family: str, table: TextRows, rows: RowValues, weaves: Sequence[Mapping[str, object]]) -> Family:
+def _sound_rows(
+    family: str, table: TextRows, rows: RowValues, weaves: Sequence[Mapping[str, object]]
+) -> Family:
     """The table of the rows that nothing is wrong with; a name that stands twice is no row's."""
     refusals, refused = table.refusals, table.refusals.told()
     twice = {(problem.row or "").lower() for problem in refused if problem.column == "name"}
-    wrong = refusals.rows | {row for row, name in enumerate(refusals.names) if name.lower() in twice}
+    wrong = refusals.rows | {
+        row for row, name in enumerate(refusals.names) if name.lower() in twice
+    }
     kept = [row for row in range(len(table)) if row not in wrong]
 
     def texts(column: str, default: str = "") -> tuple[str, ...]:

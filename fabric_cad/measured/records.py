@@ -15,8 +15,8 @@ from ..support.errors import InputError, Place, read_input
 class Record:
     """One line that holds something: its number from 1 and the texts of its cells.
 
-    A workbook knows more of its cells, by their number from 0: ``faults`` tells what is no text and no
-    number, ``merged`` what lies in another cell's area; ``numbers`` were entered as numbers, and
+    A workbook knows more of its cells, by their number from 0: ``faults`` tells what is no text and
+    no number, ``merged`` what lies in another cell's area; ``numbers`` were entered as numbers, and
     ``percents`` are shown as percentages.
     """
 
@@ -82,21 +82,28 @@ def _text(place: Place, raw: bytes) -> str:
     except UnicodeDecodeError as error:
         name = encoding.upper().removesuffix("-SIG")
         line = raw[: error.start].count(b"\n") + 1
-        raise InputError(place.problem(f"not {name} text; save the table as 'CSV UTF-8'", line)) from error
+        raise InputError(
+            place.problem(f"not {name} text; save the table as 'CSV UTF-8'", line)
+        ) from error
 
     if "\0" in text:
         line = len(re.findall(r"\r\n|\r|\n", text[: text.index("\0")])) + 1
         message = "this line holds a NUL character, which no text table does; save the table as 'CSV UTF-8'"
         raise InputError(place.problem(message, line))
+
     return text
 
 
 def _csv_records(place: Place, lines: list[str], separator: str) -> Iterator[Record]:
     try:
         # ended again, so that line breaks inside a quoted cell stay
-        reader = csv.reader((line + "\n" for line in lines), delimiter=separator, skipinitialspace=True)
+        reader = csv.reader(
+            (line + "\n" for line in lines), delimiter=separator, skipinitialspace=True
+        )
     except (TypeError, ValueError) as error:
-        raise InputError(place.problem(f"sep={separator!r} names no separator: {error}", 1)) from error
+        raise InputError(
+            place.problem(f"sep={separator!r} names no separator: {error}", 1)
+        ) from error
 
     line = 1
     try:

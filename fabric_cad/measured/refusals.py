@@ -38,7 +38,9 @@ class _Refusal:
 class Refusals:
     """Gathers what is wrong with rows, by their numbers, of which ``names`` are the names."""
 
-    def __init__(self, place: Place, records: Sequence[Record], names: Sequence[str], header: Sequence[str]) -> None:
+    def __init__(
+        self, place: Place, records: Sequence[Record], names: Sequence[str], header: Sequence[str]
+    ) -> None:
         self.place, self.records, self.names = place, records, names
         self.positions = {column: position for position, column in enumerate(header)}
         self.refusals: list[_Refusal] = []
@@ -49,8 +51,13 @@ class Refusals:
         self.add(row, Step.LINE, message)
         self.closed.add(row)
 
-    def add(self, row: int, step: Step, message: str, column: str | None = None, named: bool = True) -> None:
-        """A problem of a row; by columns where the step is. Where it is not ``named``, its name is no name to tell."""
+    def add(
+        self, row: int, step: Step, message: str, column: str | None = None, named: bool = True
+    ) -> None:
+        """A problem of a row.
+
+        By columns where the step is. Where it is not ``named``, its name is no name to tell.
+        """
         if row in self.closed:
             return
         by_column = step in (Step.SHEET, Step.CELL, Step.SCATTER)
@@ -66,4 +73,6 @@ class Refusals:
 
     def told(self) -> tuple[Problem, ...]:
         """All problems, in order."""
-        return tuple(refusal.problem for refusal in sorted(self.refusals, key=lambda refusal: refusal.order))
+        return tuple(
+            refusal.problem for refusal in sorted(self.refusals, key=lambda refusal: refusal.order)
+        )

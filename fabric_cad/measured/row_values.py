@@ -16,7 +16,8 @@ class RowValues:
     """What the rules look at: arrays of shape (rows,) by column, and a text a row.
 
     ``values`` are in the unit a quantity is kept in, NaN where a cell is empty or refused already;
-    ``filled`` is True where something stands in the cell, be it refused. ``sections`` are "" where none is named.
+    ``filled`` is True where something stands in the cell, be it refused. ``sections`` are "" where
+    none is named.
     """
 
     values: Mapping[str, np.ndarray]
@@ -40,7 +41,9 @@ class RowValues:
         """True where a direction has cells of its own: the warp of a balanced row has none."""
         if direction == "weft":
             return np.ones(len(self.sections), dtype=bool)
-        return np.any([self.filled[f"{direction}_{quantity}"] for quantity in PER_DIRECTION], axis=0)
+        return np.any(
+            [self.filled[f"{direction}_{quantity}"] for quantity in PER_DIRECTION], axis=0
+        )
 
     def spacing(self, direction: str) -> np.ndarray:
         """Distance of neighbouring yarns, mm."""

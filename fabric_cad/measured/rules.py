@@ -1,9 +1,9 @@
 """The rules of a row that need no model: what a rule is, and those of single columns, over whole tables of numbers.
 
-The reader of the tables, rows from a script, a study's rows and the propagation of scatter all ask the same rules.
-Those between a row's cells are in :mod:`~fabric_cad.measured.relations`, those of a weave's cells in
-:mod:`~fabric_cad.weave.faults`; what a text must be to be a number is the reader's own business
-(:mod:`~fabric_cad.measured.cells`).
+The reader of the tables, rows from a script, a study's rows and the propagation of scatter all ask
+the same rules. Those between a row's cells are in :mod:`~fabric_cad.measured.relations`, those of a
+weave's cells in :mod:`~fabric_cad.weave.faults`; what a text must be to be a number is the reader's
+own business (:mod:`~fabric_cad.measured.cells`).
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ _USUAL_SECTION = next(iter(SECTIONS))
 class Rule:
     """A rule of one column: where it is broken, and what to say of the value and the bound that it breaks.
 
-    ``message`` may hold ``{value}``, ``{bound}`` and ``{section}``; ``broken`` and ``bound`` give arrays of shape
-    (rows,).
+    ``message`` may hold ``{value}``, ``{bound}`` and ``{section}``; ``broken`` and ``bound`` give
+    arrays of shape (rows,).
     """
 
     column: str
@@ -32,8 +32,13 @@ class Rule:
     message: str
     bound: Callable[[RowValues], np.ndarray] | None = None
 
-    def faults(self, rows: RowValues, shown: Callable[[int], str] | None = None) -> list[tuple[int, str]]:
-        """The number of every row that breaks it and what to say of it; ``shown(row)`` writes the row's value."""
+    def faults(
+        self, rows: RowValues, shown: Callable[[int], str] | None = None
+    ) -> list[tuple[int, str]]:
+        """The number of every row that breaks it and what to say of it.
+
+        ``shown(row)`` writes the row's value.
+        """
         broken = np.flatnonzero(self.broken(rows)).tolist()
         if not broken:
             return []
@@ -44,7 +49,9 @@ class Rule:
         def told(row: int) -> str:
             value = shown(row) if shown else "" if values is None else f"{values[row]:g}"
             bound = None if bounds is None else bounds[row]
-            return self.message.format(value=value, bound=bound, section=rows.sections[row] or _USUAL_SECTION)
+            return self.message.format(
+                value=value, bound=bound, section=rows.sections[row] or _USUAL_SECTION
+            )
 
         return [(row, told(row)) for row in broken]
 
@@ -57,7 +64,9 @@ def bound_fault(column: str, value: float) -> str | None:
 
 def _bounded(column: str) -> Rule:
     bound = NUMBERS[column].bound
-    return Rule(column, lambda rows: bound.broken(rows.values[column], 0), f"{{value}} is {bound.word}")
+    return Rule(
+        column, lambda rows: bound.broken(rows.values[column], 0), f"{{value}} is {bound.word}"
+    )
 
 
 BOUNDS = {column: _bounded(column) for column in NUMBERS}

@@ -56,8 +56,12 @@ class SettingsFile:
 
     def _check_row(self, families: Path, row: str, tables: object) -> None:
         known = _row_names(families)
-        if row not in known and did_you_mean(row, known):  # a slip; what is like no row may be left of one
-            self.problems.append(self.problem("", f"rows.{row}", f"no row is called so{did_you_mean(row, known)}"))
+        if row not in known and did_you_mean(
+            row, known
+        ):  # a slip; what is like no row may be left of one
+            self.problems.append(
+                self.problem("", f"rows.{row}", f"no row is called so{did_you_mean(row, known)}")
+            )
         if not isinstance(tables, dict):
             self.problems.append(self.problem("", f"rows.{row}", "is not a table"))
             return
@@ -78,7 +82,11 @@ class SettingsFile:
     def _check(self, table: str, key: str, value: object, row: str) -> None:
         checks = self._checks[table]
         if key not in checks:
-            self.problems.append(self.problem(table, key, f"no such key in [{table}]{did_you_mean(key, checks)}", row))
+            self.problems.append(
+                self.problem(
+                    table, key, f"no such key in [{table}]{did_you_mean(key, checks)}", row
+                )
+            )
             return
 
         kind, sound, complaint = checks[key]

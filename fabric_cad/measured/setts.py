@@ -20,20 +20,28 @@ def sett(draft: Draft) -> dict[str, str]:
     cells, notes = {}, []
     for direction in DIRECTIONS:
         spacing = draft.measure(direction, "spacing")
-        each = [draft.measure(f"{direction} spacing", key) for key in draft.sections.get(f"{direction} spacing", {})]
+        each = [
+            draft.measure(f"{direction} spacing", key)
+            for key in draft.sections.get(f"{direction} spacing", {})
+        ]
         threads = draft.count(direction, "threads", MOST_THREADS) or len(each)
         if any(each) and (spacing or len(each) >= threads):  # threads with a spacing of their own
             own = [value or spacing or 0.0 for value in each]
-            spacing = (sum(own) + max(0, threads - len(own)) * (spacing or 0.0)) / max(threads, len(own))
+            spacing = (sum(own) + max(0, threads - len(own)) * (spacing or 0.0)) / max(
+                threads, len(own)
+            )
+
         thickness = draft.measure(direction, "thickness")
         if spacing is None:
             continue
         if (unit := _unit(draft, direction)) is None:
             notes.append(f"{direction} spacing {spacing:g} in no unit")
             continue
+
         cells[f"{direction}_density_per_mm"] = f"{1 / (spacing * unit):.6g}"
         if thickness is not None and thickness < spacing:
             cells[f"{direction}_thickness_mm"] = f"{thickness * unit:.6g}"
+
     return cells | ({"notes": "; ".join(notes)} if notes else {})
 
 
@@ -41,5 +49,7 @@ def _unit(draft: Draft, direction: str) -> float | None:
     """Millimetres of the unit of a direction's spacing, None where the draft names none."""
     name = draft.entry(direction, "units").lower()
     if name and name not in _UNITS:
-        raise draft.wrong(f"{quoted(name)} is none of decipoints, inches and centimeters", direction, "units")
+        raise draft.wrong(
+            f"{quoted(name)} is none of decipoints, inches and centimeters", direction, "units"
+        )
     return _UNITS.get(name)

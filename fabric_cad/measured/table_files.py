@@ -22,7 +22,11 @@ def family_of(path: Path) -> str:
     if path.stem in FAMILIES:
         return path.stem
     meant = _meant(path)
-    hint = f"; did you mean {meant}?" if meant else f"; those are {NO_TABLE}, or .xlsx or .ods for .csv"
+    hint = (
+        f"; did you mean {meant}?"
+        if meant
+        else f"; those are {NO_TABLE}, or .xlsx or .ods for .csv"
+    )
     raise InputError(Problem(f"not a family table{hint}", str(path)))
 
 
@@ -41,16 +45,23 @@ def stray_tables(folder: Path) -> list[Problem]:
         files = sorted(path for path in folder.iterdir() if path.exists())
     except OSError:  # no right to list the folder; its tables may be readable all the same
         return []
+
     for path in files:
         meant = _meant(path)
         # some file systems take Twill.csv for twill.csv, and so it was read
         if meant and not any(path.samefile(table) for table in read):
-            strays.append(Problem(f"this file is not read; a table of that kind is called {meant}", str(path)))
+            strays.append(
+                Problem(f"this file is not read; a table of that kind is called {meant}", str(path))
+            )
+
     return strays
 
 
 def _meant(path: Path) -> str | None:
-    """The name of the table that a file seems to be meant for; none for what a spreadsheet locks a table with."""
+    """The name of the table that a file seems to be meant for.
+
+    None for what a spreadsheet locks a table with.
+    """
     suffix = path.suffix.strip().lower()
     if suffix not in _MEANT or path.name.startswith((".", "~")):
         return None

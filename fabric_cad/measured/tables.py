@@ -1,8 +1,8 @@
 """Family tables: what was measured, a file a weave type and a row a fabric.
 
-A table is a CSV in any dialect a spreadsheet writes (:mod:`~fabric_cad.measured.records`) or a workbook
-(:mod:`~fabric_cad.measured.workbooks`). It is read whole: everything that is wrong in it is listed in one
-:class:`~fabric_cad.support.errors.InputError`.
+A table is a CSV in any dialect a spreadsheet writes (:mod:`~fabric_cad.measured.records`) or a
+workbook (:mod:`~fabric_cad.measured.workbooks`). It is read whole: everything that is wrong in it
+is listed in one :class:`~fabric_cad.support.errors.InputError`.
 """
 
 from __future__ import annotations
@@ -44,7 +44,10 @@ def read_family(path: str | Path, partial: bool = False) -> Family:
     concerns the whole table still raises.
     """
     if not isinstance(path, (str, PathLike)):
-        raise ArgumentError(f"path: expected the path of a family table, got {type(path).__name__} {path!r:.60}")
+        raise ArgumentError(
+            f"path: expected the path of a family table, got {type(path).__name__} {path!r:.60}"
+        )
+
     path = Path(path)
     family = family_of(path)
     if path.suffix in WORKBOOKS:
@@ -53,8 +56,10 @@ def read_family(path: str | Path, partial: bool = False) -> Family:
         table = table_of(family, read_workbook(path))
     else:
         table = table_of(family, read_csv(path))
+
     if table.refused and not partial:
         raise InputError(table.refused)
+
     return table
 
 
@@ -75,12 +80,23 @@ def read_families(folder: str | Path, partial: bool = False) -> dict[str, Family
         try:
             if len(paths) > 1:
                 names = " and ".join(path.name for path in paths)
-                raise InputError(Problem(f"this table is there more than once, as {names}; keep one", str(paths[0])))
+                raise InputError(
+                    Problem(
+                        f"this table is there more than once, as {names}; keep one", str(paths[0])
+                    )
+                )
+
             tables[family] = read_family(paths[0], partial=True)
         except InputError as error:
             tables[family] = error
+
     if not tables:
-        raise InputError([Problem(f"no family table in this folder ({NO_TABLE})", str(folder)), *stray_tables(folder)])
+        raise InputError(
+            [
+                Problem(f"no family table in this folder ({NO_TABLE})", str(folder)),
+                *stray_tables(folder),
+            ]
+        )
 
     tables = _without_shared_names(tables)
     if partial:
@@ -91,7 +107,9 @@ def read_families(folder: str | Path, partial: bool = False) -> dict[str, Family
     }
 
 
-def _without_shared_names(tables: Mapping[str, Family | InputError]) -> dict[str, Family | InputError]:
+def _without_shared_names(
+    tables: Mapping[str, Family | InputError],
+) -> dict[str, Family | InputError]:
     """The tables with the rows refused whose name another table has too."""
     readable = {family: table for family, table in tables.items() if isinstance(table, Family)}
     users: dict[str, list[tuple[str, int]]] = {}
@@ -102,7 +120,11 @@ def _without_shared_names(tables: Mapping[str, Family | InputError]) -> dict[str
     shared: dict[str, dict[int, Problem]] = {}
     for rows in users.values():
         for family, row in rows if len(rows) > 1 else ():
-            others = (readable[other].problem(number, "name", "") for other, number in rows if other != family)
+            others = (
+                readable[other].problem(number, "name", "")
+                for other, number in rows
+                if other != family
+            )
             where = ", ".join(problem.where for problem in others)
             problem = readable[family].problem(row, "name", f"this row name is also at {where}")
             shared.setdefault(family, {})[row] = problem
@@ -112,4 +134,5 @@ def _without_shared_names(tables: Mapping[str, Family | InputError]) -> dict[str
         table = readable[family]
         part = table.take([row for row in range(len(table)) if row not in problems])
         kept[family] = replace(part, refused=(*table.refused, *problems.values()))
+
     return kept

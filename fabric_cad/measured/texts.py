@@ -15,7 +15,10 @@ Texts = dict[str, str | None]
 
 @dataclass(frozen=True)
 class TextRows:
-    """The rows of a table as texts under their header; ``separator`` is that of the file, "" in a workbook."""
+    """The rows of a table as texts under their header.
+
+    ``separator`` is that of the file, "" in a workbook.
+    """
 
     header: Sequence[str]
     separator: str

@@ -12,7 +12,10 @@ DROPPED_ZEROS = "; a spreadsheet drops the zeros a number starts with: write o a
 
 
 def read_weave_cells(family: str, table: TextRows) -> list[dict[str, object]]:
-    """The weave cells of every row by column; None, or an empty pattern, where one is refused, and told."""
+    """The weave cells of every row by column.
+
+    None, or an empty pattern, where one is refused, and told.
+    """
     if family == "pattern":
         return [{"pattern": _pattern(table, row, text)} for row, text in table.column("pattern")]
 
@@ -56,5 +59,7 @@ def _pattern(table: TextRows, row: int, text: str | None) -> tuple[str, ...]:
 
     digits, uneven = "0" in text or "1" in text, len(set(map(len, pattern))) > 1
     for fault in faults:
-        table.refusals.add(row, Step.CELL, fault + (DROPPED_ZEROS if digits and uneven else ""), "pattern")
+        table.refusals.add(
+            row, Step.CELL, fault + (DROPPED_ZEROS if digits and uneven else ""), "pattern"
+        )
     return pattern

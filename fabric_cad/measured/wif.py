@@ -30,7 +30,13 @@ _ROW = (
     *(f"weft_{quantity}" for quantity in ("density_per_mm", "width_mm", "crimp", "thickness_mm")),
     *(f"warp_{quantity}" for quantity in ("density_per_mm", "width_mm", "crimp", "thickness_mm")),
     *("fabric_thickness_mm", "section", "lateral_height_mm", "float_gap", "thicker"),
-    *("weft_linear_density_tex", "warp_linear_density_tex", "fibre_density_g_cm3", "source", "notes"),
+    *(
+        "weft_linear_density_tex",
+        "warp_linear_density_tex",
+        "fibre_density_g_cm3",
+        "source",
+        "notes",
+    ),
 )
 
 
@@ -48,17 +54,21 @@ def read_wif(path: str | Path) -> tuple[str, ...]:
 def wif_row(path: str | Path, name: str) -> str:
     """Header and one row of ``pattern.csv`` for a draft.
 
-    Spacings are densities, and a thickness below its spacing is the yarn's; a larger one is how programs
-    draw threads that touch. What else was measured is left empty.
-    Raises :class:`InputError` for a name no table takes, and as :func:`read_wif` does.
+    Spacings are densities, and a thickness below its spacing is the yarn's; a larger one is how
+    programs draw threads that touch. What else was measured is left empty. Raises
+    :class:`InputError` for a name no table takes, and as :func:`read_wif` does.
     """
     if not is_safe_name(name):
-        raise InputError(f"name: {quoted(name)} is no row name: letters, digits, '_' and '-' only, not '-' first")
+        raise InputError(
+            f"name: {quoted(name)} is no row name: letters, digits, '_' and '-' only, not '-' first"
+        )
+
     text = io.StringIO()
     rows = csv.DictWriter(text, _ROW, restval="", lineterminator="\n")
     rows.writeheader()
     draft = read_draft(Path(path))
     rows.writerow({"name": name, "pattern": written(_pattern(draft))} | sett(draft))
+
     return text.getvalue()
 
 
@@ -85,7 +95,15 @@ def _threading(draft: Draft, rising: bool) -> list[frozenset[int]]:
     if idle:
         side = "under" if rising else "over"
         why = f"hangs on no shaft: warp {idle[0]} passes {side} every yarn and never interlaces"
-        raise _idle(draft, "threading", "warp", idle, f"thread {idle[0]} of {len(shafts)} {why}", len(shafts))
+        raise _idle(
+            draft,
+            "threading",
+            "warp",
+            idle,
+            f"thread {idle[0]} of {len(shafts)} {why}",
+            len(shafts),
+        )
+
     return shafts
 
 
@@ -98,13 +116,20 @@ def _moved(draft: Draft, rising: bool) -> list[frozenset[int]]:
     else:
         section = "treadling"
         if not draft.sections.get(section):
-            raise draft.wrong("this section is missing or empty, and there is no [LIFTPLAN]", section)
+            raise draft.wrong(
+                "this section is missing or empty, and there is no [LIFTPLAN]", section
+            )
+
         moved = _treadled(draft)
+
     idle = [number for number, each in enumerate(moved, start=1) if not each]
     if idle:
         side = "over" if rising else "under"
         why = f"moves no shaft: weft {idle[0]} passes {side} every yarn and never interlaces"
-        raise _idle(draft, section, "weft", idle, f"pick {idle[0]} of {len(moved)} {why}", len(moved))
+        raise _idle(
+            draft, section, "weft", idle, f"pick {idle[0]} of {len(moved)} {why}", len(moved)
+        )
+
     return moved
 
 
@@ -118,7 +143,9 @@ def _treadled(draft: Draft) -> list[frozenset[int]]:
     picks = _listed(draft, "treadling", "weft", "this is no pick; the draft has {} of them")
     for number, treadles in enumerate(picks, start=1):
         for treadle in sorted(treadles - ties.keys()):
-            raise draft.wrong(f"treadle {treadle} is not in [TIEUP]", "treadling", draft.key("treadling", number))
+            raise draft.wrong(
+                f"treadle {treadle} is not in [TIEUP]", "treadling", draft.key("treadling", number)
+            )
     return [frozenset().union(*(ties[treadle] for treadle in treadles)) for treadles in picks]
 
 
@@ -145,11 +172,16 @@ def _listed(draft: Draft, section: str, direction: str, beyond: str) -> list[fro
     if last > threads:
         raise draft.wrong(beyond.format(threads), section, draft.key(section, last))
     if last > MOST_THREADS:
-        raise draft.wrong(f"{last} is not between 1 and {MOST_THREADS}", section, draft.key(section, last))
+        raise draft.wrong(
+            f"{last} is not between 1 and {MOST_THREADS}", section, draft.key(section, last)
+        )
+
     return [listed.get(number, frozenset()) for number in range(1, threads + 1)]
 
 
-def _idle(draft: Draft, section: str, direction: str, idle: list[int], message: str, threads: int) -> InputError:
+def _idle(
+    draft: Draft, section: str, direction: str, idle: list[int], message: str, threads: int
+) -> InputError:
     """An error at the first thread that does nothing; where only the last ones do, the remedy."""
     if len(idle) > 1:
         message += f", nor do {len(idle) - 1} more"
@@ -158,7 +190,9 @@ def _idle(draft: Draft, section: str, direction: str, idle: list[int], message: 
     return draft.wrong(message, section, draft.key(section, idle[0]))
 
 
-def _check_moved(draft: Draft, threading: list[frozenset[int]], moved: frozenset[int], rising: bool) -> None:
+def _check_moved(
+    draft: Draft, threading: list[frozenset[int]], moved: frozenset[int], rising: bool
+) -> None:
     """Refuse threads on shafts only that no pick moves."""
     for number, shafts in enumerate(threading, start=1):
         if not shafts & moved:
@@ -181,5 +215,6 @@ def _period(yarns: Sequence[str]) -> int:
     return next(
         period
         for period in range(1, count + 1)
-        if (count % period == 0 or 2 * period <= count) and yarns[period:] == yarns[: count - period]
+        if (count % period == 0 or 2 * period <= count)
+        and yarns[period:] == yarns[: count - period]
     )

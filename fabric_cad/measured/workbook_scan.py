@@ -1,7 +1,8 @@
 """What python-calamine does not tell of a workbook: cells in error, merged ones, and how large it would become.
 
-Error values and formulas that no program has computed read as empty cells there, and a single value in
-the last cell of a sheet as 17 thousand million cells. So the sheets' XML is looked through first.
+Error values and formulas that no program has computed read as empty cells there, and a single value
+in the last cell of a sheet as 17 thousand million cells. So the sheets' XML is looked through
+first.
 """
 
 from __future__ import annotations
@@ -74,12 +75,18 @@ def scan_workbook(raw: bytes, path: str) -> dict[str, Sheet]:
             if size > LARGEST:
                 message = f"unpacks to {size / 2**20:.0f} MB; a family table has at most {LARGEST / 2**20:.0f}"
                 raise InputError(Problem(message, path))
+
             if damaged := archive.testzip():  # reads no more than those sizes
                 raise zipfile.BadZipFile(f"{damaged} is damaged")
 
             names = archive.namelist()
-            if "META-INF/manifest.xml" in names and b"encryption-data" in archive.read("META-INF/manifest.xml"):
-                raise InputError(Problem("the workbook is protected by a password; save it without one", path))
+            if "META-INF/manifest.xml" in names and b"encryption-data" in archive.read(
+                "META-INF/manifest.xml"
+            ):
+                raise InputError(
+                    Problem("the workbook is protected by a password; save it without one", path)
+                )
+
             if "content.xml" in names:
                 return _ods_sheets(archive.read("content.xml"))
             return {name: _xlsx_sheet(archive, part) for name, part in _xlsx_parts(archive).items()}
@@ -95,7 +102,9 @@ def _local(element: ElementTree.Element) -> str:
 
 def _attribute(element: ElementTree.Element, name: str) -> str:
     """An attribute by its name without its namespace, empty where it is not there."""
-    return next((value for key, value in element.attrib.items() if key.rsplit("}", 1)[-1] == name), "")
+    return next(
+        (value for key, value in element.attrib.items() if key.rsplit("}", 1)[-1] == name), ""
+    )
 
 
 # ---- Office Open XML (ECMA-376)
@@ -111,7 +120,9 @@ def _xlsx_parts(archive: zipfile.ZipFile) -> dict[str, str]:
     for sheet in book.iterfind(".//{*}sheets/{*}sheet"):
         target = targets.get(_attribute(sheet, "id"), "")
         if "worksheets/" in target:
-            parts[sheet.get("name", "")] = target.lstrip("/") if target.startswith("/") else f"xl/{target}"
+            parts[sheet.get("name", "")] = (
+                target.lstrip("/") if target.startswith("/") else f"xl/{target}"
+            )
     return parts
 
 
@@ -130,10 +141,13 @@ def _xlsx_sheet(archive: zipfile.ZipFile, part: str) -> Sheet:
             _merge(sheet, element.get("ref", ""))
         elif event == "end" and kind == "row":
             element.clear()
+
     return sheet
 
 
-def _xlsx_cell(sheet: Sheet, row: int, column: int, cell: ElementTree.Element, percents: frozenset[str]) -> None:
+def _xlsx_cell(
+    sheet: Sheet, row: int, column: int, cell: ElementTree.Element, percents: frozenset[str]
+) -> None:
     value, formula = cell.findtext("{*}v"), cell.find("{*}f")
     if value is None and formula is None and cell.find("{*}is") is None:
         return
@@ -168,7 +182,11 @@ def _merge(sheet: Sheet, reference: str) -> None:
     for row in range(first[0], min(last[0] + 1, sheet.rows)):
         for column in range(first[1], min(last[1] + 1, sheet.columns)):
             if (row, column) != first:
-                sheet.merge(row, column, f"the cell is merged with others ({reference}); split them, a value each")
+                sheet.merge(
+                    row,
+                    column,
+                    f"the cell is merged with others ({reference}); split them, a value each",
+                )
 
 
 def _percent_styles(archive: zipfile.ZipFile) -> frozenset[str]:
@@ -177,9 +195,15 @@ def _percent_styles(archive: zipfile.ZipFile) -> frozenset[str]:
         return frozenset()
     styles = ElementTree.fromstring(archive.read("xl/styles.xml"))
     percent = {"9", "10"}  # 0% and 0.00%, built in
-    percent |= {f.get("numFmtId", "") for f in styles.iterfind(".//{*}numFmt") if "%" in f.get("formatCode", "")}
+    percent |= {
+        f.get("numFmtId", "")
+        for f in styles.iterfind(".//{*}numFmt")
+        if "%" in f.get("formatCode", "")
+    }
     formats = styles.iterfind("{*}cellXfs/{*}xf")
-    return frozenset(str(number) for number, style in enumerate(formats) if style.get("numFmtId") in percent)
+    return frozenset(
+        str(number) for number, style in enumerate(formats) if style.get("numFmtId") in percent
+    )
 
 
 # ---- OpenDocument 1.3, part 3, section 9
@@ -211,23 +235,30 @@ def _ods_row(sheet: Sheet, row: int, element: ElementTree.Element) -> None:
         kind, repeats = _local(cell), _repeats(cell, "columns")
         if kind == "covered-table-cell":
             for covered in range(column, column + min(repeats, _WIDEST)):
-                sheet.merge(row, covered, "the cell is merged with others; split them, a value each")
+                sheet.merge(
+                    row, covered, "the cell is merged with others; split them, a value each"
+                )
         elif kind == "table-cell" and (fault := _ods_cell(cell)) is not None:
             sheet.fill(row + _repeats(element, "rows") - 1, column + repeats - 1)
             if fault:
                 sheet.faults[row, column] = fault
             if _attribute(cell, "value-type") == "percentage":
                 sheet.percents.add((row, column))
+
         column += repeats
 
 
 def _ods_cell(cell: ElementTree.Element) -> str | None:
     """What is wrong with a cell, an empty text where it is sound; None for an empty cell."""
-    types: Mapping[str, str] = {key: value for key, value in cell.attrib.items() if key.endswith("}value-type")}
+    types: Mapping[str, str] = {
+        key: value for key, value in cell.attrib.items() if key.endswith("}value-type")
+    }
     shown = "".join(cell.itertext()).strip()
     if not (types or shown):
         return None
-    if "error" in types.values() or (_attribute(cell, "formula") and re.match(r"#[A-Z/0!?]+|Err:[0-9]+", shown)):
+    if "error" in types.values() or (
+        _attribute(cell, "formula") and re.match(r"#[A-Z/0!?]+|Err:[0-9]+", shown)
+    ):
         return f"the cell holds the error {shown}"
     return ""
 

@@ -19,19 +19,26 @@ _ENCRYPTED = "the workbook is protected by a password; save it without one"
 def read_workbook(path: Path) -> Records:
     """The one filled sheet of a workbook; formulas count with the value the spreadsheet stored.
 
-    Numbers are taken as they are, in no language's decimal mark. Raises :class:`InputError` where the
-    file is no workbook, is protected, unpacks to more than a family table can be, or has more
+    Numbers are taken as they are, in no language's decimal mark. Raises :class:`InputError` where
+    the file is no workbook, is protected, unpacks to more than a family table can be, or has more
     than one sheet with something in it.
     """
     raw = read_input(path)
     if raw.startswith(_OLD):
         message = "an old workbook (.xls), or one protected by a password; save it as .xlsx or .ods without one"
         raise InputError(Problem(message, str(path)))
+
     scanned = scan_workbook(raw, str(path))
-    grids = {name: grid for name, grid in _grids(raw, path).items() if _is_filled(grid, scanned.get(name))}
+    grids = {
+        name: grid
+        for name, grid in _grids(raw, path).items()
+        if _is_filled(grid, scanned.get(name))
+    }
     if len(grids) > 1:
         names = ", ".join(map(repr, grids))
-        raise InputError(Problem(f"only one sheet may hold something, and {len(grids)} do: {names}", str(path)))
+        raise InputError(
+            Problem(f"only one sheet may hold something, and {len(grids)} do: {names}", str(path))
+        )
 
     for name, grid in grids.items():
         return Records(Place(str(path), name), tuple(_records(grid, scanned.get(name, Sheet()))))
@@ -54,15 +61,24 @@ def _grids(raw: bytes, path: Path) -> dict[str, list[list]]:
 
     try:
         book = calamine.CalamineWorkbook.from_filelike(io.BytesIO(raw))
-        names = [sheet.name for sheet in book.sheets_metadata if sheet.typ == calamine.SheetTypeEnum.WorkSheet]
-        return {name: book.get_sheet_by_name(name).to_python(skip_empty_area=False) for name in names}
+        names = [
+            sheet.name
+            for sheet in book.sheets_metadata
+            if sheet.typ == calamine.SheetTypeEnum.WorkSheet
+        ]
+        return {
+            name: book.get_sheet_by_name(name).to_python(skip_empty_area=False) for name in names
+        }
     except calamine.PasswordError as error:
         raise InputError(Problem(_ENCRYPTED, str(path))) from error
     except (calamine.CalamineError, *READING_ERRORS) as error:
         raise InputError(Problem(f"cannot be read as a workbook: {error}", str(path))) from error
     except BaseException as error:
-        if type(error).__name__ != "PanicException":  # the reader's own, in no module to import it from
+        if (
+            type(error).__name__ != "PanicException"
+        ):  # the reader's own, in no module to import it from
             raise
+
         raise InputError(Problem(f"cannot be read as a workbook: {error}", str(path))) from error
 
 

@@ -1,7 +1,8 @@
 """A cell's yarns meshed in closed form: the nodes that gmsh finds on the STEP, without CAD and gmsh.
 
-Outline nodes are points of the exact skin; a :mod:`template <fabric_cad.meshing.templates>` fills every
-layer of them. Needed where no STEP is, or where gaps are spaced otherwise than those of a dry cell.
+Outline nodes are points of the exact skin; a :mod:`template <fabric_cad.meshing.templates>` fills
+every layer of them. Needed where no STEP is, or where gaps are spaced otherwise than those of a dry
+cell.
 """
 
 from __future__ import annotations
@@ -51,6 +52,7 @@ def closed_mesh(fabric: SolvedFabric, plans: Sequence[Plan]) -> Mesh:
     """
     points, hexahedra, count = [], [], 0
     surfaces: dict[Surface, np.ndarray] = {}
+
     for plan in plans:
         nodes = yarn_nodes(fabric, plan)
         numbers = count + np.arange(nodes.shape[0] * nodes.shape[1]).reshape(nodes.shape[:2])

@@ -23,10 +23,12 @@ def hexahedra(fabric: SolvedFabric, options: MeshOptions) -> int:
 
     quads = {d: mesh.quadrilaterals(frames[d], across[d], options.through) for d in across}
     layers = {
-        (d, high): options.gap + mesh.column_count(frames[crossed], "top" if high else "bottom", across[crossed])
+        (d, high): options.gap
+        + mesh.column_count(frames[crossed], "top" if high else "bottom", across[crossed])
         for d, crossed in (("weft", "warp"), ("warp", "weft"))
         for high in (True, False)
     }
+
     return sum(
         quads[yarn.direction] * sum(layers[yarn.direction, high] for high in yarn.high)
         for yarn in yarns_of(fabric.weave.interlacement())
@@ -40,7 +42,8 @@ _COPIES = 6
 def needed_memory(fabric: SolvedFabric, options: MeshOptions) -> int:
     """Bytes that meshing a fabric's cell and writing its files takes beyond the program itself.
 
-    Besides the hexahedra these are a section's nodes, each a weighted mean of all nodes of its outline.
+    Besides the hexahedra these are a section's nodes, each a weighted mean of all nodes of its
+    outline.
     """
     sections = [
         2 * (across + options.through) * (across + 1) * (options.through + 1)

@@ -40,7 +40,8 @@ class EdgedMesh(SectionMesh):
         counts = _column_counts(typical, across)
         middle = np.linspace(-halves[0], halves[0], counts[0] + 1)
         outer = [
-            np.linspace(inner, outer, count // 2 + 1)[1:] for inner, outer, count in zip(halves, halves[1:], counts[1:])
+            np.linspace(inner, outer, count // 2 + 1)[1:]
+            for inner, outer, count in zip(halves, halves[1:], counts[1:])
         ]
         right = np.concatenate([[halves[0]], *outer])
         places = np.concatenate([-right[:0:-1], middle, right[1:]])
@@ -83,6 +84,7 @@ class EdgedMesh(SectionMesh):
                 "left": StripNodes.evenly(around.left),
                 "right": StripNodes.evenly(around.right),
             }
+
         return Outline(self.template(places, through), strips)
 
 
@@ -118,6 +120,7 @@ class LenticularMesh(EdgedMesh):
                 f"{options.through} is odd; a lenticular section has an even number of layers",
                 column="through",
             )
+
         for name in ("across", "crossing"):
             if getattr(options, name) < 2 * options.through:
                 return Problem(
@@ -126,6 +129,7 @@ class LenticularMesh(EdgedMesh):
                     "of a lenticular section take",
                     column=name,
                 )
+
         return None
 
     def layers(self, through: int) -> int:
@@ -152,7 +156,9 @@ def _chord_ends(frame: Frame, side: str, across: int) -> tuple[list[float], list
     side has its own chord's end in the same column.
     """
     edge, half = frame.edge, frame.split(side).half_chord
-    chords = [frame.split(each).half_chord for each in ("bottom", "top") if frame.has_laterals(each)]
+    chords = [
+        frame.split(each).half_chord for each in ("bottom", "top") if frame.has_laterals(each)
+    ]
     if len(chords) == 2 and max(chords) - min(chords) < _NEARLY * frame.width / across:
         return [sum(chords) / 2, edge], [half, edge]
 
@@ -163,7 +169,8 @@ def _chord_ends(frame: Frame, side: str, across: int) -> tuple[list[float], list
 def _column_counts(ends: Sequence[float], across: int) -> list[int]:
     """Elements on the middle interval, from -ends[0] to ends[0], and on the pairs beside it.
 
-    They are ``across`` in all, but a narrow interval gets one element still, so that there may be more.
+    They are ``across`` in all, but a narrow interval gets one element still, so that there may be
+    more.
     """
     pairs = [2 * max(1, round(across * (b - a) / (2 * ends[-1]))) for a, b in zip(ends, ends[1:])]
     return [max(1, across - sum(pairs)), *pairs]

@@ -13,7 +13,9 @@ def meshio_mesh(mesh: Mesh):
     try:
         import meshio
     except ImportError as error:
-        raise MissingPackageError("to_meshio needs the package meshio: pip install meshio") from error
+        raise MissingPackageError(
+            "to_meshio needs the package meshio: pip install meshio"
+        ) from error
 
     sizes = [len(quads) for quads in mesh.surfaces.values()]
     starts = np.cumsum([0, *sizes])
@@ -23,9 +25,11 @@ def meshio_mesh(mesh: Mesh):
     none = np.empty(0, dtype=np.int64)
     sets = {body.name: [mesh.elements_of(body), none] for body in mesh.bodies}
     sets |= {
-        surface.name: [none, np.arange(start, start + n)] for surface, start, n in zip(mesh.surfaces, starts, sizes)
+        surface.name: [none, np.arange(start, start + n)]
+        for surface, start, n in zip(mesh.surfaces, starts, sizes)
     }
     number = yarn_numbers(mesh)
+
     return meshio.Mesh(
         mesh.points,
         [("hexahedron", mesh.hexahedra), ("quad", quads)],

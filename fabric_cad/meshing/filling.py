@@ -22,6 +22,7 @@ def fill(gmsh: Any, yarn: YarnFaces) -> None:
     inner = _inner_nodes(yarn, outline)
     first = int(gmsh.model.mesh.getMaxNodeTag()) + 1
     inner_tags = np.arange(first, first + inner[..., 0].size).reshape(inner.shape[:2])
+
     for entity, layers in (
         ((3, yarn.solid), slice(1, -1)),
         ((2, yarn.start), slice(None, 1)),
@@ -58,6 +59,7 @@ def _outline(gmsh: Any, yarn: YarnFaces) -> tuple[np.ndarray, np.ndarray]:
     shape = plan.rows[-1] + 1, yarn.template.outline
     tags = np.zeros(shape, dtype=np.uint64)
     places = np.full((*shape, 3), np.nan)
+
     for (segment, side), face in yarn.skin.items():
         (slots, columns), layers = plan.strips[side], plan.layers[segment]
         nodes, coordinates, parameters = gmsh.model.mesh.getNodes(

@@ -17,7 +17,9 @@ def grid_of(mesh: Mesh):
 def described(mesh: Mesh):
     """The mesh with yarn number and direction of every element."""
     grid = grid_of(mesh)
-    direction = np.array([-1 if body.direction is None else body.direction.axis for body in mesh.bodies])
+    direction = np.array(
+        [-1 if body.direction is None else body.direction.axis for body in mesh.bodies]
+    )
     grid.cell_data["yarn"] = yarn_numbers(mesh).astype(np.int32)[mesh.body]
     grid.cell_data["direction"] = direction.astype(np.int8)[mesh.body]
     return grid

@@ -39,8 +39,13 @@ class Mesh:
         return np.flatnonzero(self.body == self.bodies.index(body))
 
     def quads_of(self, body: Body, *kinds: SurfaceKind) -> np.ndarray:
-        """The quadrilaterals (quads, 4) of a body's surfaces of some kinds; none where it has no such surface."""
-        found = [self.surfaces[key] for kind in kinds if (key := Surface(body, kind)) in self.surfaces]
+        """The quadrilaterals (quads, 4) of a body's surfaces of some kinds.
+
+        None where it has no such surface.
+        """
+        found = [
+            self.surfaces[key] for kind in kinds if (key := Surface(body, kind)) in self.surfaces
+        ]
         return np.vstack([np.empty((0, 4), dtype=np.int64), *found])
 
     def nodes_of(self, body: Body, *kinds: SurfaceKind) -> np.ndarray:
@@ -48,7 +53,10 @@ class Mesh:
         return np.unique(self.quads_of(body, *kinds))
 
     def fibre_axes(self) -> np.ndarray:
-        """Unit vectors (elements, 3) along the yarn, the mean of the four edges that follow it; 0 off the yarns."""
+        """Unit vectors (elements, 3) along the yarn, the mean of the four edges that follow it.
+
+        0 off the yarns.
+        """
         p = self.points
         along = np.zeros((len(self.hexahedra), 3))
         for start, end in LENGTHWISE:
@@ -61,8 +69,8 @@ class Mesh:
 
         Cell data ``yarn`` (from 1, in the order of the field data ``yarn_names``; 0 off the yarns),
         ``direction`` (0 weft, 1 warp; -1 off the yarns) and ``fibre_axis``. With ``surfaces`` a
-        MultiBlock: the grid as ``yarns``, then every surface as PolyData under its name, with its node
-        numbers from 0 as point data ``node``.
+        MultiBlock: the grid as ``yarns``, then every surface as PolyData under its name, with its
+        node numbers from 0 as point data ``node``.
         """
         from .grids import pyvista_blocks, pyvista_grid
 
@@ -71,8 +79,8 @@ class Mesh:
     def to_meshio(self):
         """The mesh for meshio: one block of hexahedra, one of the quadrilaterals of all surfaces.
 
-        ``cell_sets`` hold every yarn's hexahedra and every surface's quadrilaterals under their names; cell
-        data ``yarn`` (from 1) and ``fibre_axis`` (0, 0, 0 on quadrilaterals). Raises
+        ``cell_sets`` hold every yarn's hexahedra and every surface's quadrilaterals under their
+        names; cell data ``yarn`` (from 1) and ``fibre_axis`` (0, 0, 0 on quadrilaterals). Raises
         :class:`~fabric_cad.support.errors.MissingPackageError` where meshio is not installed.
         """
         from .exchange import meshio_mesh
@@ -80,7 +88,10 @@ class Mesh:
         return meshio_mesh(self)
 
     def across_axes(self) -> np.ndarray:
-        """Unit vectors (elements, 3) across the yarn, in plane and normal to the fibre; 0 off the yarns."""
+        """Unit vectors (elements, 3) across the yarn, in plane and normal to the fibre.
+
+        0 off the yarns.
+        """
         across = np.cross([0.0, 0.0, 1.0], self.fibre_axes())
         length = np.linalg.norm(across, axis=1)[:, None]
         return np.divide(across, length, out=np.zeros_like(across), where=length > 0)
@@ -94,4 +105,6 @@ class Mesh:
 def yarn_numbers(mesh: Mesh) -> np.ndarray:
     """For every body of a mesh its number among the yarns, from 1; 0 for what is no yarn."""
     yarns = mesh.yarns
-    return np.array([yarns.index(body) + 1 if body in yarns else 0 for body in mesh.bodies], dtype=np.int64)
+    return np.array(
+        [yarns.index(body) + 1 if body in yarns else 0 for body in mesh.bodies], dtype=np.int64
+    )

@@ -40,14 +40,23 @@ class MeshOptions:
             if value > MOST:
                 shown = str(value) if value < 1e12 else "this"
                 raise InputError(Problem(f"{shown} is above {MOST} (elements)", column=name))
+
             if value < least:
-                raise InputError(Problem(f"{value} is not at least {least} (elements)", column=name))
+                raise InputError(
+                    Problem(f"{value} is not at least {least} (elements)", column=name)
+                )
+
         if self.gap % 2:
             raise InputError(
-                Problem(f"{self.gap} is odd; the cell is cut at mid-gap, so a gap has an even number", column="gap")
+                Problem(
+                    f"{self.gap} is odd; the cell is cut at mid-gap, so a gap has an even number",
+                    column="gap",
+                )
             )
 
-    def check(self, fabric: SolvedFabric, instead: Mapping[str, str] = MappingProxyType({})) -> None:
+    def check(
+        self, fabric: SolvedFabric, instead: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
         """Raise :class:`InputError` where the section of a fabric cannot be filled so, or no memory holds the mesh.
 
         ``instead`` names, for an option that follows from another, that other one to blame.
@@ -106,11 +115,17 @@ def mesh_options(
 def _sized(fabric: SolvedFabric, size: float, given: Mapping[str, int]) -> dict[str, int]:
     """The numbers of elements that a target size (mm) asks for, where ``given`` says nothing else."""
     if not (size > 0 and isfinite(size)):
-        raise InputError(Problem(f"{size:g} is not above 0" + " and finite" * (size > 0), column="size"))
+        raise InputError(
+            Problem(f"{size:g} is not above 0" + " and finite" * (size > 0), column="size")
+        )
 
     def parts(length: float) -> int:
         if length > MOST * size:
-            raise InputError(Problem(f"{size:g} makes more than {MOST} elements of {length:.4g} mm", column="size"))
+            raise InputError(
+                Problem(
+                    f"{size:g} makes more than {MOST} elements of {length:.4g} mm", column="size"
+                )
+            )
         return ceil(length / size)
 
     mesh, through = section_mesh(fabric.form), given.get("through")
@@ -118,7 +133,9 @@ def _sized(fabric: SolvedFabric, size: float, given: Mapping[str, int]) -> dict[
         through = mesh.layers(parts(max(fabric.weft.thickness, fabric.warp.thickness)))
     least = mesh.least_across(through)
 
-    spare = [fabric.directions[d].crossed_spacing - fabric.crossed(d).width for d in ("weft", "warp")]
+    spare = [
+        fabric.directions[d].crossed_spacing - fabric.crossed(d).width for d in ("weft", "warp")
+    ]
     return {
         "across": max(least, parts(fabric.weft.width)),
         "crossing": max(least, parts(fabric.warp.width)),

@@ -23,10 +23,10 @@ from .templates import Template
 class Plan:
     """The mesh of one yarn, planned.
 
-    ``sections`` and ``places`` of its control planes along the cell (mm) and ``layers``, the shares from 0 to 1
-    at which nodes lie between two of them; ``strips`` maps each side of the skin to the places
-    of its nodes in the section's outline and to their shares of the strip, in the strip's own
-    order; ``contacts`` lists (segment, side) of the faces that touch; ``middles`` per segment
+    ``sections`` and ``places`` of its control planes along the cell (mm) and ``layers``, the shares
+    from 0 to 1 at which nodes lie between two of them; ``strips`` maps each side of the skin to the
+    places of its nodes in the section's outline and to their shares of the strip, in the strip's
+    own order; ``contacts`` lists (segment, side) of the faces that touch; ``middles`` per segment
     the sides and their middles (v, z), mm; ``centre`` is the coordinate of the axis. ``moved``,
     (layers of nodes, inner, 2) in mm across and upwards, leads the inner nodes away from where the
     template puts them.
@@ -62,18 +62,21 @@ def plan_yarns(
 ) -> list[Plan]:
     """Plan the meshes of yarns so that the contact nodes will coincide with those of the yarns they cross.
 
-    ``gap`` gives for yarns of either direction the shares from 0, a crossing's end, to 1, mid-gap, at which
-    nodes lie; evenly where it is None.
+    ``gap`` gives for yarns of either direction the shares from 0, a crossing's end, to 1, mid-gap,
+    at which nodes lie; evenly where it is None.
     """
     evenly = np.linspace(0.0, 1.0, options.gap // 2 + 1)
     gaps = dict.fromkeys(DIRECTIONS, (evenly, evenly))
     if gap is not None:
         gaps = {direction: (1.0 - shares[::-1], shares) for direction, shares in gap.items()}
     plans = [_plan_yarn(fabric, yarn, options, gaps[yarn.direction]) for yarn in yarns]
+
     return section_mesh(fabric.form).completed(plans, options)
 
 
-def _plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions, gaps: tuple[np.ndarray, np.ndarray]) -> Plan:
+def _plan_yarn(
+    fabric: SolvedFabric, yarn: Yarn, options: MeshOptions, gaps: tuple[np.ndarray, np.ndarray]
+) -> Plan:
     swept = SweptYarn(fabric, yarn)
     planes = swept.planes
     mesh, frame = section_mesh(fabric.form), fabric.frame(yarn.direction)
@@ -88,7 +91,11 @@ def _plan_yarn(fabric: SolvedFabric, yarn: Yarn, options: MeshOptions, gaps: tup
         layers += [gaps[0], *map(_shares, columns), gaps[1]]
 
     outline = mesh.outline(frame, across[yarn.direction], options.through)
-    contacts = [(contact_segment(planes, k), "bottom" if high else "top") for k, high in enumerate(yarn.high)]
+    contacts = [
+        (contact_segment(planes, k), "bottom" if high else "top")
+        for k, high in enumerate(yarn.high)
+    ]
+
     return Plan(
         yarn=yarn,
         sections=swept.sections,

@@ -10,15 +10,17 @@
       0-------1          aspect               slabs and needles, which are    the corners
                                               no fault where yarns are thin
 
-Scaled Jacobian: the least, over the eight corners and the centre, of the determinant of three *unit*
-vectors, the edges that leave a corner or the principal axes at the centre. It is that of Verdict, as in VTK
-and ParaView: C. J. Stimpson et al., *The Verdict Geometric Quality Library*, SAND2007-1751 (2007),
-after P. M. Knupp, *Algebraic mesh quality metrics for unstructured initial meshes*, Finite Elements in
-Analysis and Design 39 (2003) 217-241. Unlike VTK's, it is 0 where an edge has no length.
+Scaled Jacobian: the least, over the eight corners and the centre, of the determinant of three
+*unit* vectors, the edges that leave a corner or the principal axes at the centre. It is that of
+Verdict, as in VTK and ParaView: C. J. Stimpson et al., *The Verdict Geometric Quality Library*,
+SAND2007-1751 (2007), after P. M. Knupp, *Algebraic mesh quality metrics for unstructured initial
+meshes*, Finite Elements in Analysis and Design 39 (2003) 217-241. Unlike VTK's, it is 0 where an
+edge has no length.
 
-gmsh's minSJ is another figure: the least Jacobian determinant over that at the centre, not over edge lengths.
-It tells a cell whose size varies, whatever its angles: 0.002 where a side is a thousandth of the opposite one
-(0.94 here), 0.5 at a flat tip of one degree (0.018 here). The opposite edge ratio sees what it sees.
+gmsh's minSJ is another figure: the least Jacobian determinant over that at the centre, not over
+edge lengths. It tells a cell whose size varies, whatever its angles: 0.002 where a side is a
+thousandth of the opposite one (0.94 here), 0.5 at a flat tip of one degree (0.018 here). The
+opposite edge ratio sees what it sees.
 """
 
 from __future__ import annotations
@@ -31,7 +33,10 @@ import numpy as np
 from .hexahedron import EDGES
 from .mesh import Mesh
 
-_MEETING = [tuple(int(np.flatnonzero((edges == corner).any(axis=1))[0]) for edges in EDGES) for corner in range(8)]
+_MEETING = [
+    tuple(int(np.flatnonzero((edges == corner).any(axis=1))[0]) for edges in EDGES)
+    for corner in range(8)
+]
 """Which edge of each direction meets a corner."""
 
 _OUTWARDS = [
@@ -47,9 +52,10 @@ _CHUNK = 16384  # elements, so that all of one chunk stays in the cache
 class Quality:
     """Figures (elements,) of hexahedra.
 
-    ``scaled_jacobian``; ``opposite_edge_ratio``, the shortest over the longest of the four edges of one
-    direction, the least of three; ``least_angle`` and ``greatest_angle`` of the corners of their faces, deg;
-    ``aspect``, the longest over the shortest principal axis (Verdict's maximum edge ratio).
+    ``scaled_jacobian``; ``opposite_edge_ratio``, the shortest over the longest of the four edges of
+    one direction, the least of three; ``least_angle`` and ``greatest_angle`` of the corners of
+    their faces, deg; ``aspect``, the longest over the shortest principal axis (Verdict's maximum
+    edge ratio).
     """
 
     scaled_jacobian: np.ndarray

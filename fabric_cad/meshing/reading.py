@@ -32,6 +32,7 @@ def _read(gmsh: Any) -> Mesh:
     hexahedra: dict[Body, np.ndarray] = {}
     surfaces: dict[Surface, np.ndarray] = {}
     others = 0
+
     for dimension, group in gmsh.model.getPhysicalGroups():
         name = gmsh.model.getPhysicalName(dimension, group)
         if dimension == 3:
@@ -53,7 +54,10 @@ def _read(gmsh: Any) -> Mesh:
 
 
 def _surface(name: str) -> Surface | None:
-    """The surface of a body that is called so; None where it is one of no body, as a face of the box."""
+    """The surface of a body that is called so.
+
+    None where it is one of no body, as a face of the box.
+    """
     try:
         return Surface.named(name)
     except ValueError:
@@ -86,4 +90,5 @@ def _elements(
                 blocks.append(nodes.reshape(-1, corners))
             else:
                 others += len(elements)
+
     return np.vstack(blocks), others

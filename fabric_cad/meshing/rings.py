@@ -2,8 +2,8 @@
 
 The sections of a direction are few: those of its control planes, and what they blend to in a gap.
 At some stations of every gap the inner nodes are moved to their best places; between stations the
-displacements are interpolated, so that lines of nodes along the yarn run smoothly. All layers of one
-crossing have the same section, and get the same displacements.
+displacements are interpolated, so that lines of nodes along the yarn run smoothly. All layers of
+one crossing have the same section, and get the same displacements.
 """
 
 from __future__ import annotations
@@ -17,7 +17,11 @@ from ..section.strips import Section, Strip
 from .smoothing import smoothed
 from .templates import Template, block_modes, round_template, worst_corner
 
-_INSETS = [(lateral, upright) for upright in (0.08, 0.12, 0.17, 0.22) for lateral in np.geomspace(0.002, 0.1, 14)]
+_INSETS = [
+    (lateral, upright)
+    for upright in (0.08, 0.12, 0.17, 0.22)
+    for lateral in np.geomspace(0.002, 0.1, 14)
+]
 """Thicknesses of the ring to choose from, as shares of width and height."""
 
 _STATIONS = 4
@@ -53,7 +57,9 @@ def fill_rings(
     The displacements, one array (layers, inner, 2) in mm a yarn, are across and upwards.
     """
     spans = [span for yarn in yarns for span in yarn]
-    stations = list(dict.fromkeys(_station(span, share) for span in spans for share in span.stations))
+    stations = list(
+        dict.fromkeys(_station(span, share) for span in spans for share in span.stations)
+    )
     outlines = np.array([_outline(station, strips) for station in stations])
     templates = [round_template(across, upright, inset) for inset in _INSETS]
     template = templates[int(np.argmax([worst_corner(each, outlines) for each in templates]))]

@@ -60,12 +60,16 @@ class RoundMesh(SectionMesh):
         rings: dict[Yarn, tuple[Template, np.ndarray]] = {}
         for direction, across in zip(DIRECTIONS, (options.across, options.crossing)):
             alike = [plan for plan in plans if plan.yarn.direction == direction]
-            spans = [list(map(Span, plan.sections, plan.sections[1:], plan.layers)) for plan in alike]
+            spans = [
+                list(map(Span, plan.sections, plan.sections[1:], plan.layers)) for plan in alike
+            ]
             if spans:
                 template, moved = fill_rings(spans, alike[0].strips, across, options.through - 2)
                 rings |= {plan.yarn: (template, shift) for plan, shift in zip(alike, moved)}
 
-        return [replace(plan, template=rings[plan.yarn][0], moved=rings[plan.yarn][1]) for plan in plans]
+        return [
+            replace(plan, template=rings[plan.yarn][0], moved=rings[plan.yarn][1]) for plan in plans
+        ]
 
     def fault(self, options: MeshOptions) -> Problem | None:
         """The layers are even and at least four."""

@@ -1,15 +1,16 @@
 """Inner nodes moved to where the corners of a section's quadrilaterals are most upright.
 
 Layers of nodes are vertical planes. At a node a hexahedron therefore has the scaled Jacobian
-sin(corner) cos(slope): ``corner`` is the angle of its quadrilateral there, ``slope`` that of the line of
-nodes which follows the yarn. Slopes are the yarn's own; corners are improved by minimising, first with
-the residual corner - 90 deg, then with cos(corner) / sin(corner)^2, the sum of squares
+sin(corner) cos(slope): ``corner`` is the angle of its quadrilateral there, ``slope`` that of the
+line of nodes which follows the yarn. Slopes are the yarn's own; corners are improved by minimising,
+first with the residual corner - 90 deg, then with cos(corner) / sin(corner)^2, the sum of squares
 
     sum residual^2 + 0.2 sum log(edge / opposite edge)^2
 
-over displacements of the inner nodes that are bilinear on a coarse grid over the inner block. The second
-sum keeps cells even, so that no edge collapses. Steps are Levenberg's and Marquardt's, taken by all
-sections of a chunk at once; a step that would fold a cell is refused. Outline nodes never move.
+over displacements of the inner nodes that are bilinear on a coarse grid over the inner block. The
+second sum keeps cells even, so that no edge collapses. Steps are Levenberg's and Marquardt's, taken
+by all sections of a chunk at once; a step that would fold a cell is refused. Outline nodes never
+move.
 """
 
 from __future__ import annotations
@@ -32,8 +33,9 @@ _NUMBERS = 4_000_000
 def smoothed(template: Template, modes: np.ndarray, outlines: np.ndarray) -> np.ndarray:
     """How far to move the inner nodes of some sections: coefficients (sections, modes, 2), mm.
 
-    ``modes`` (inner, modes) are the shapes of the displacements, ``outlines`` (sections, outline, 2) in mm.
-    A section that has a folded cell to begin with gets zeros: it is left as the template fills it.
+    ``modes`` (inner, modes) are the shapes of the displacements, ``outlines`` (sections, outline,
+    2) in mm. A section that has a folded cell to begin with gets zeros: it is left as the template
+    fills it.
     """
     size = np.ptp(outlines[..., 0], axis=1)[:, None, None]
     nodes = np.concatenate([outlines, template.weights @ outlines], axis=1) / size
@@ -44,7 +46,10 @@ def smoothed(template: Template, modes: np.ndarray, outlines: np.ndarray) -> np.
     for first in range(0, len(outlines), together):
         some = slice(first, first + together)
         for sharp, steps in _STAGES:
-            _descend(cells, nodes[some], coefficients[some], sharp, steps)  # in place: a slice is a view
+            _descend(
+                cells, nodes[some], coefficients[some], sharp, steps
+            )  # in place: a slice is a view
+
     return coefficients * size
 
 
@@ -68,7 +73,9 @@ class _Cells:
         return cls(corners, pairs, np.vstack([np.zeros((template.outline, modes.shape[1])), modes]))
 
 
-def _descend(cells: _Cells, nodes: np.ndarray, coefficients: np.ndarray, sharp: bool, steps: int) -> None:
+def _descend(
+    cells: _Cells, nodes: np.ndarray, coefficients: np.ndarray, sharp: bool, steps: int
+) -> None:
     """Improve the coefficients (sections, modes, 2) in place."""
     residuals, rates = _residuals(cells, nodes + cells.shapes @ coefficients, sharp)
     cost = (residuals**2).sum(axis=1)
@@ -111,7 +118,9 @@ def _residuals(cells: _Cells, nodes: np.ndarray, sharp: bool) -> tuple[np.ndarra
     to_ahead = _Edge.between(cells, nodes, here, ahead)
     to_behind = _Edge.between(cells, nodes, here, behind)
 
-    (x_ahead, y_ahead), (x_behind, y_behind) = (np.moveaxis(edge.vector, -1, 0) for edge in (to_ahead, to_behind))
+    (x_ahead, y_ahead), (x_behind, y_behind) = (
+        np.moveaxis(edge.vector, -1, 0) for edge in (to_ahead, to_behind)
+    )
     area = x_ahead * y_behind - y_ahead * x_behind
     angle = np.arctan2(area, (to_ahead.vector * to_behind.vector).sum(axis=-1))
     folded = (area <= 0).any(axis=1)
@@ -121,6 +130,7 @@ def _residuals(cells: _Cells, nodes: np.ndarray, sharp: bool) -> tuple[np.ndarra
         crooked, rate = cosine / sine**2, -(1 + cosine**2) / sine**3
     else:
         crooked, rate = angle - np.pi / 2, np.ones_like(angle)
+
     turning = rate[..., None] * (to_behind.turning() - to_ahead.turning())
 
     weight = np.sqrt(_EVENNESS)
@@ -130,6 +140,7 @@ def _residuals(cells: _Cells, nodes: np.ndarray, sharp: bool) -> tuple[np.ndarra
     residuals = np.concatenate([crooked, uneven], axis=1)
     residuals[folded] = np.inf
     stretching = weight * (one.stretching() - other.stretching())
+
     return residuals, np.concatenate([turning, stretching], axis=1)
 
 

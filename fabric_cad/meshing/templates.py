@@ -74,6 +74,7 @@ def lenticular_template(across: int, through: int, near: float = 0.5) -> Templat
     )
     left = _tip(bottom[: through + 1], top[: through + 1], k, near)
     right = _tip(bottom[::-1][: through + 1], top[::-1][: through + 1], k, near)
+
     return numbered(outline, [core, *left, *(patch[::-1] for patch in right)])
 
 
@@ -86,7 +87,8 @@ def round_template(across: int, through: int, inset: tuple[float, float]) -> Tem
     """
     outline, bottom, top, left, right = _sides(across, through)
     s, t = (
-        margin + np.linspace(0.0, 1.0, parts + 1) * (1 - 2 * margin) for margin, parts in zip(inset, (across, through))
+        margin + np.linspace(0.0, 1.0, parts + 1) * (1 - 2 * margin)
+        for margin, parts in zip(inset, (across, through))
     )
     block = _coons_at(bottom, top, left, right, s, t)
     ring = [
@@ -95,6 +97,7 @@ def round_template(across: int, through: int, inset: tuple[float, float]) -> Tem
         np.stack([left, block[0]], axis=0),
         np.stack([block[-1], right], axis=0),
     ]
+
     return numbered(outline, [block, *ring])
 
 
@@ -107,7 +110,9 @@ def block_modes(across: int, through: int) -> np.ndarray:
     columns = {0, near, far, round(across / 2), across - far, across - near, across}
     rows = {0, through // 2, through}
     s, t = (
-        np.array([np.interp(np.arange(parts + 1), sorted(knots), hat) for hat in np.eye(len(knots))])
+        np.array(
+            [np.interp(np.arange(parts + 1), sorted(knots), hat) for hat in np.eye(len(knots))]
+        )
         for parts, knots in ((across, columns), (through, rows))
     )
     return np.einsum("ki,lj->ijkl", s, t).reshape((across + 1) * (through + 1), -1)
@@ -133,7 +138,11 @@ def _coons_at(bottom, top, left, right, s: np.ndarray, t: np.ndarray) -> np.ndar
     lower, upper, west, east = along(bottom, s), along(top, s), along(left, t), along(right, t)
     s, t = s[:, None, None], t[None, :, None]
     sides = (1 - t) * lower[:, None] + t * upper[:, None] + (1 - s) * west[None] + s * east[None]
-    return sides - (1 - s) * ((1 - t) * bottom[0] + t * top[0]) - s * ((1 - t) * bottom[-1] + t * top[-1])
+    return (
+        sides
+        - (1 - s) * ((1 - t) * bottom[0] + t * top[0])
+        - s * ((1 - t) * bottom[-1] + t * top[-1])
+    )
 
 
 def _tip(bottom: np.ndarray, top: np.ndarray, k: int, near: float) -> list[np.ndarray]:
@@ -156,7 +165,14 @@ def straight(start: np.ndarray, end: np.ndarray, parts: int) -> np.ndarray:
 
 def coons(bottom: np.ndarray, top: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Transfinite patch between four sides, shape (columns + 1, rows + 1, outline)."""
-    patch = _coons_at(bottom, top, left, right, np.linspace(0.0, 1.0, len(bottom)), np.linspace(0.0, 1.0, len(left)))
+    patch = _coons_at(
+        bottom,
+        top,
+        left,
+        right,
+        np.linspace(0.0, 1.0, len(bottom)),
+        np.linspace(0.0, 1.0, len(left)),
+    )
     patch[:, 0], patch[:, -1], patch[0], patch[-1] = bottom, top, left, right
     return patch
 
@@ -184,9 +200,12 @@ def numbered(outline: int, patches: list[np.ndarray]) -> Template:
             if key not in numbers:
                 numbers[key] = len(weights)
                 weights.append(patch[place])
+
             ids[place] = numbers[key]
+
         corners = (ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:])
         quads.append(np.stack([each.ravel() for each in corners], axis=1))
+
     return Template(outline, np.array(weights[outline:]).reshape(-1, outline), np.vstack(quads))
 
 

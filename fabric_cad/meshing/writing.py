@@ -16,14 +16,19 @@ from .mesh import Mesh
 def write_mesh(mesh: Mesh, path: str | Path, others: Mapping[str, np.ndarray]) -> None:
     """Write a mesh as gmsh 4.1: a physical volume a body, a physical surface each of its own and of ``others``.
 
-    ``others`` maps names to quadrilaterals (quads, 4). A face that several surfaces share is written once and
-    belongs to all of them. Nodes and hexahedra have the mesh's numbers, from 1. Raises :class:`BuildError`.
+    ``others`` maps names to quadrilaterals (quads, 4). A face that several surfaces share is
+    written once and belongs to all of them. Nodes and hexahedra have the mesh's numbers, from 1.
+    Raises :class:`BuildError`.
     """
     surfaces = {surface.name: quads for surface, quads in mesh.surfaces.items()} | dict(others)
     with gmsh_session() as gmsh:
         try:
             _add_bodies(gmsh, mesh)
-            _add_surfaces(gmsh, {name: quads for name, quads in surfaces.items() if len(quads)}, len(mesh.hexahedra))
+            _add_surfaces(
+                gmsh,
+                {name: quads for name, quads in surfaces.items() if len(quads)},
+                len(mesh.hexahedra),
+            )
             gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
             gmsh.option.setNumber("Mesh.Binary", 1)
             gmsh.write(str(path))
@@ -53,7 +58,9 @@ def _add_surfaces(gmsh: Any, surfaces: Mapping[str, np.ndarray], hexahedra: int)
     order = np.argsort(kind, kind="stable")
     for number, faces in enumerate(np.split(order, np.cumsum(np.bincount(kind))[:-1]), 1):
         gmsh.model.addDiscreteEntity(2, number)
-        gmsh.model.mesh.addElementsByType(number, QUADRILATERAL, hexahedra + 1 + faces, quads[faces].ravel() + 1)
+        gmsh.model.mesh.addElementsByType(
+            number, QUADRILATERAL, hexahedra + 1 + faces, quads[faces].ravel() + 1
+        )
 
     for number, name in enumerate(surfaces):
         entities = np.flatnonzero((kinds == number).any(axis=1)) + 1
@@ -64,7 +71,9 @@ def _memberships(surfaces: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """All quadrilaterals once, (quads, 4), and the numbers of the surfaces each is in, (quads, most), then -1."""
     every = np.concatenate(surfaces)
     owner = np.repeat(np.arange(len(surfaces)), [len(quads) for quads in surfaces])
-    _, first, face = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_inverse=True)
+    _, first, face = np.unique(
+        np.sort(every, axis=1), axis=0, return_index=True, return_inverse=True
+    )
     face = face.ravel()
 
     order = np.lexsort((owner, face))

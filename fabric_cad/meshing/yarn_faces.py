@@ -72,6 +72,7 @@ def classified(gmsh: Any, plan: Plan, lattice: Lattice, solid: int) -> YarnFaces
     """
     ends: dict[str, int] = {}
     skin: dict[tuple[int, str], int] = {}
+
     for _, face in gmsh.model.getBoundary([(3, solid)], oriented=False):
         points = lattice.to_woven(_middle_line(gmsh, face))
         along = points[:, plan.along_axis]
@@ -86,6 +87,7 @@ def classified(gmsh: Any, plan: Plan, lattice: Lattice, solid: int) -> YarnFaces
     if (count := len(ends) + len(skin)) != expected:
         name = plan.yarn.name
         raise BuildError(f"{name} has {count} faces that can be told apart, not {expected}")
+
     return YarnFaces(plan, lattice, solid, ends["start"], ends["end"], skin)
 
 

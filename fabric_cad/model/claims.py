@@ -37,7 +37,9 @@ def _first_column(solution: Solution, row: int) -> str:
 def _crimp_is_reached() -> Claim:
     """The length equation has a solution. (A.11), (A.12)"""
     return Claim(
-        broken=lambda solution: np.isnan(sum(solution.amplitude.values()) + sum(solution.thickness.values())),
+        broken=lambda solution: np.isnan(
+            sum(solution.amplitude.values()) + sum(solution.thickness.values())
+        ),
         column=_first_column,
         message=lambda solution, row: "no yarn of the model has this crimp",
     )
@@ -50,7 +52,9 @@ def _not_too_steep(direction: Direction) -> Claim:
     return Claim(
         broken=lambda solution: solution.slope[direction] > LARGEST_SLOPE,
         column=column,
-        message=lambda solution, row: too_steep(direction, solution.slope[direction][row], column(solution, row)),
+        message=lambda solution, row: too_steep(
+            direction, solution.slope[direction][row], column(solution, row)
+        ),
     )
 
 
@@ -63,7 +67,9 @@ def _thick_enough() -> Claim:
         return f"{fabric:g} is below {symbols} = {least:.4g} mm"
 
     return Claim(
-        broken=lambda solution: solution.measured.closing[FABRIC_THICKNESS] < solution.least * (1 - ROUNDING),
+        broken=lambda solution: (
+            solution.measured.closing[FABRIC_THICKNESS] < solution.least * (1 - ROUNDING)
+        ),
         column=last_column,
         message=message,
     )
@@ -119,5 +125,7 @@ def _of_fabrics() -> Iterator[Claim]:
 OF_FABRICS = tuple(_of_fabrics())
 """Claims of both directions together, in the order in which they are told."""
 
-OF_DIRECTIONS = {direction: (_has_amplitude(direction), _has_thickness(direction)) for direction in DIRECTIONS}
+OF_DIRECTIONS = {
+    direction: (_has_amplitude(direction), _has_thickness(direction)) for direction in DIRECTIONS
+}
 """Claims of a direction whatever the form of its sections."""

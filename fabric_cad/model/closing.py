@@ -16,7 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-CLOSING = ("weft_crimp", "warp_crimp", "weft_thickness_mm", "warp_thickness_mm", "fabric_thickness_mm")
+CLOSING = (
+    "weft_crimp",
+    "warp_crimp",
+    "weft_thickness_mm",
+    "warp_thickness_mm",
+    "fabric_thickness_mm",
+)
 """Quantities that close the identification, in the order in which they are preferred."""
 
 ROUNDING = 1e-9
@@ -41,7 +47,9 @@ class Closed:
 
     def where(self, mask: np.ndarray, other: Closed) -> Closed:
         """This solution where ``mask``, the other elsewhere."""
-        return Closed(*(np.where(mask, getattr(self, name), getattr(other, name)) for name in _NAMES))
+        return Closed(
+            *(np.where(mask, getattr(self, name), getattr(other, name)) for name in _NAMES)
+        )
 
     def put(self, rows: np.ndarray, other: Closed) -> None:
         """Write the solution of some rows, by their numbers, into the arrays of this one."""

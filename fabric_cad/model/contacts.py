@@ -14,9 +14,9 @@ _Values = TypeVar("_Values", "ContactValues", "BetweenValues")
 class ContactValues:
     """Contact sections of one direction at one plateau: arrays of shape (rows,), lengths mm.
 
-    The contact profile is G(v) = p (|v| - d_c)^2 out to the ``half_chord``, where the crossed yarn turns
-    (0 where it floats on), and has there the ``slope`` of the crossed yarn; the free side opposite
-    is split at ``free_half_chord``::
+    The contact profile is G(v) = p (|v| - d_c)^2 out to the ``half_chord``, where the crossed yarn
+    turns (0 where it floats on), and has there the ``slope`` of the crossed yarn; the free side
+    opposite is split at ``free_half_chord``::
 
              free_half_chord
             <------------->
@@ -54,7 +54,10 @@ class ContactValues:
 
 @dataclass(frozen=True, eq=False)
 class BetweenValues:
-    """Sections of one direction between crossings: arrays of shape (rows,), mm; see there for the half chord."""
+    """Sections of one direction between crossings: arrays of shape (rows,), mm.
+
+    See there for the half chord.
+    """
 
     width: np.ndarray
     thickness: np.ndarray

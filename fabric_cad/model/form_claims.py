@@ -86,7 +86,9 @@ def _top_of_arcs(contact: ContactValues) -> np.ndarray:
     """Highest point of an arc above the contact side, whether the crossed yarn turns or not, mm."""
     tops = []
     for turn in (1, 0):
-        radius, centre = lateral_arc(0.0, contact.width, contact.half_chord, turn * contact.rise, turn * contact.slope)
+        radius, centre = lateral_arc(
+            0.0, contact.width, contact.half_chord, turn * contact.rise, turn * contact.slope
+        )
         tops.append(centre + radius)
     return np.maximum(*tops)
 
@@ -107,7 +109,9 @@ def _arcs_fit(direction: Direction, plateau: str) -> Claim:
             f"{direction} thickness {contact.thickness[row]:.4g} mm"
         )
 
-    return Claim(broken, lambda solution, row: _contact_column(solution, row, direction, side), message)
+    return Claim(
+        broken, lambda solution, row: _contact_column(solution, row, direction, side), message
+    )
 
 
 def _arcs_fit_between(direction: Direction) -> Claim:
@@ -124,7 +128,9 @@ def _arcs_fit_between(direction: Direction) -> Claim:
             f"not below the {direction} thickness {between.thickness[row]:.4g} mm"
         )
 
-    return Claim(broken, lambda solution, row: _contact_column(solution, row, direction, "top"), message)
+    return Claim(
+        broken, lambda solution, row: _contact_column(solution, row, direction, "top"), message
+    )
 
 
 def _contact_column(solution: Solution, row: int, direction: Direction, side: str) -> str:

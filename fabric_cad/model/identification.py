@@ -1,7 +1,7 @@
 """From measured rows to the parameters of the model, whole tables at once.
 
-Density and width known, the crimp of a yarn fixes its amplitude A through the length equation
-and the reverse; the relations of :mod:`~fabric_cad.model.closing` give the rest. The first quantities
+Density and width known, the crimp of a yarn fixes its amplitude A through the length equation and
+the reverse; the relations of :mod:`~fabric_cad.model.closing` give the rest. The first quantities
 given, in the order of :data:`~fabric_cad.model.closing.CLOSING`, identify a row; what a row holds
 beyond them is compared with the model.
 """
@@ -30,9 +30,9 @@ from .transitions import transitions
 class Identified:
     """What became of a table's rows.
 
-    ``columns`` are those of the solved table, as arrays or lists of one value for each of ``rows``, the
-    numbers of the rows that are fabrics; ``refused`` holds for every other row number what makes it none.
-    ``closing`` and ``beyond``, shape (5, fabrics), are the measured quantities of
+    ``columns`` are those of the solved table, as arrays or lists of one value for each of ``rows``,
+    the numbers of the rows that are fabrics; ``refused`` holds for every other row number what
+    makes it none. ``closing`` and ``beyond``, shape (5, fabrics), are the measured quantities of
     :data:`~fabric_cad.model.closing.CLOSING` and whether they are beyond what identified the row.
     """
 
@@ -50,10 +50,19 @@ class Identified:
 
         rows = np.delete(self.rows, numbers)
         columns = {
-            name: values[rows] if isinstance(values, np.ndarray) else [values[row] for row in rows.tolist()]
+            name: values[rows]
+            if isinstance(values, np.ndarray)
+            else [values[row] for row in rows.tolist()]
             for name, values in self.columns.items()
         }
-        return replace(self, columns=columns, rows=rows, closing=self.closing[:, rows], beyond=self.beyond[:, rows])
+
+        return replace(
+            self,
+            columns=columns,
+            rows=rows,
+            closing=self.closing[:, rows],
+            beyond=self.beyond[:, rows],
+        )
 
     def comparisons(self) -> tuple[tuple[tuple[str, float, float], ...], ...]:
         """(quantity, measured, model) of what each fabric measured beyond need."""
@@ -102,7 +111,9 @@ def identify_rows(table: Family) -> Identified:
         columns = solved_columns(table, replace(both[0], closed=taken), other, choice.two)
 
     lacking = np.flatnonzero(identifying.number == 0).tolist()
-    refused = {row: insufficient(table, measured, row) for row in lacking} | choice.refused(*refused_by)
+    refused = {row: insufficient(table, measured, row) for row in lacking} | choice.refused(
+        *refused_by
+    )
 
     used = [identifying.uses(quantity) for quantity in range(len(CLOSING))]
     beyond = ~np.isnan(measured.closing) & ~np.array(used)

@@ -13,7 +13,10 @@ from .closing import CLOSING, RULES
 from .measured_values import Measured
 
 SETS: tuple[tuple[int, ...], ...] = ((), *RULES)
-"""What can identify a row, by number of quantities in CLOSING; nothing where its measurements do not suffice."""
+"""What can identify a row, by number of quantities in CLOSING.
+
+Nothing where its measurements do not suffice.
+"""
 
 _ALONE = (0, 2, 4)
 """Quantities of which any one identifies a balanced row."""
@@ -71,7 +74,9 @@ def insufficient(table: Family, measured: Measured, row: int) -> Problem:
             "a balanced fabric needs one of the three",
         )
 
-    given = [column for column, value in zip(CLOSING, measured.closing[:, row]) if not np.isnan(value)]
+    given = [
+        column for column, value in zip(CLOSING, measured.closing[:, row]) if not np.isnan(value)
+    ]
     missing = [column for column in CLOSING if column not in given]
     return table.problem(
         row,

@@ -62,16 +62,21 @@ def slope_from_crimp(crimp, projected, parabola, gap):
         *(np.asarray(value, dtype=float) for value in (crimp, projected, parabola, gap))
     )
     target = crimp * projected
+
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         slope = np.sqrt(2.0 * target / (gap + parabola / 3.0))
         moving = np.ones(slope.shape, dtype=bool)
         for _ in range(60):
             residual = excess_length(slope, parabola, gap) - target
             step = residual / _excess_derivative(slope, parabola, gap)
-            slope = np.where(moving, slope - step, slope)  # an entry's result is not its neighbours' business
+            slope = np.where(
+                moving, slope - step, slope
+            )  # an entry's result is not its neighbours' business
             moving &= np.abs(step) > 4e-16 * slope
             if not moving.any():
                 break
+
         residual = excess_length(slope, parabola, gap) - target
         converged = (slope > 0) & (np.abs(residual) <= 1e-12 * target)
+
     return np.where(converged, slope, np.nan)

@@ -20,9 +20,9 @@ CONTACT_SIDE = {"high": "bottom", "low": "top"}
 class Measured:
     """A table's measurements, with a balanced row's weft cells used for its warp; mm, shape (rows,).
 
-    ``chord`` and ``offset`` are by direction and plateau of the yarn itself, ``closing``, shape (5, rows),
-    in the order of :data:`~fabric_cad.model.closing.CLOSING`; ``forms`` are the sections' with the
-    numbers of their rows.
+    ``chord`` and ``offset`` are by direction and plateau of the yarn itself, ``closing``, shape (5,
+    rows), in the order of :data:`~fabric_cad.model.closing.CLOSING`; ``forms`` are the sections'
+    with the numbers of their rows.
     """
 
     density: Mapping[Direction, np.ndarray]
@@ -56,7 +56,9 @@ class Measured:
             width=width,
             chord=chord,
             offset=offset,
-            closing=np.array([values[column] for column in CLOSING]).reshape(len(CLOSING), len(table)),
+            closing=np.array([values[column] for column in CLOSING]).reshape(
+                len(CLOSING), len(table)
+            ),
             balanced=balanced,
             lateral_height=np.nan_to_num(values["lateral_height_mm"]),
             forms=tuple(rows_by_form(table.sections)),

@@ -15,8 +15,8 @@ fibres fill pi / sqrt(12) = 0.907 at most (hexagonal packing). A yarn that holds
 
     LARGEST_SLOPE = sqrt((pi / sqrt(12) / SLACKEST)^2 - 1) = 2.85, 70.7 degrees
 
-beyond which a row is refused. That 0.3 is an assumption, on the lenient side: it is what loose staple and
-textured yarns have; a roving of 0.6 would be solid at a slope of 1.13.
+beyond which a row is refused. That 0.3 is an assumption, on the lenient side: it is what loose
+staple and textured yarns have; a roving of 0.6 would be solid at a slope of 1.13.
 """
 
 from __future__ import annotations
@@ -60,30 +60,38 @@ def too_steep(direction: str, slope: float, column: str) -> str:
     """Why no yarn has this slope, which is above :data:`LARGEST_SLOPE`."""
     return (
         f"gives the {direction} a slope of {slope:.3g}, above {LARGEST_SLOPE:.3g}, which no yarn has: on it the yarn "
-        f"is squeezed to {100 / sqrt(1 + slope**2):.2g} % of its thickness, tighter than fibres pack" + _unit(column)
+        f"is squeezed to {100 / sqrt(1 + slope**2):.2g} % of its thickness, tighter than fibres pack"
+        + _unit(column)
     )
 
 
 def _unit(column: str) -> str:
     """What may be behind a crimp that is too large."""
-    return f" (crimp is a ratio; {column}_percent takes per cent)" if column.endswith("_crimp") else ""
+    return (
+        f" (crimp is a ratio; {column}_percent takes per cent)" if column.endswith("_crimp") else ""
+    )
 
 
 def implausible(table: Family, columns: Mapping[str, Sequence]) -> list[Problem]:
     """A warning for each direction of a row with a crimp above 10 % or a slope above 1.
 
-    ``columns`` are those of the solved table of the same rows. The warp of a balanced row is told of
-    only where its weft, of which it has the measurements, is not.
+    ``columns`` are those of the solved table of the same rows. The warp of a balanced row is told
+    of only where its weft, of which it has the measurements, is not.
     """
     told: list[Problem] = []
     balanced, warned = table.balanced, np.zeros(len(table), dtype=bool)
+
     for d in DIRECTIONS:
-        crimps, slopes = (np.asarray(columns[f"{d}_{name}"], dtype=float) for name in ("crimp", "slope"))
+        crimps, slopes = (
+            np.asarray(columns[f"{d}_{name}"], dtype=float) for name in ("crimp", "slope")
+        )
         large = ((crimps > LARGE_CRIMP) | (slopes > LARGE_SLOPE)) & ~(balanced & warned)
         for row in np.flatnonzero(large).tolist():
             column = responsible(d, columns["identified_by"][row].split())
             told.append(table.problem(row, column, _steep(d, crimps[row], slopes[row], column)))
+
         warned |= large
+
     return sorted(told, key=lambda problem: problem.line or 0)
 
 

@@ -29,7 +29,8 @@ _STEP = 2.0**-17
 """Step of the differences as a share of the value: the cube root of the rounding, where a central
 difference loses as little to rounding as to truncation, about 1e-10."""
 
-# faces closer than this, as a share of the fabric, are level: the same rounding as the identification's
+# faces closer than this, as a share of the fabric, are level: the same rounding as the
+# identification's
 _LEVEL = 1e-9
 
 
@@ -63,14 +64,17 @@ def propagate(table: Family, solved: SolvedTable | None = None) -> Spread:
     table = _branch_kept(table, solved)
     variance = np.where(table.scattered, 0.0, np.nan) * np.ones((len(columns), 1))
     problems: list[Problem] = []
+
     for name, std in table.scatter.items():
         rows = np.flatnonzero(std > 0)
         if len(rows):
             slopes, wrong = _derivatives(table.take(rows), name, columns, mean[:, rows])
             variance[:, rows] += (slopes * std[rows]) ** 2
             problems += wrong
+
     if problems:
         raise InputError(sorted(problems, key=lambda problem: problem.line or 0))
+
     return Spread(dict(zip(columns, mean)), dict(zip(columns, np.sqrt(variance))))
 
 
@@ -84,6 +88,7 @@ def doubts(table: Family, solved: SolvedTable) -> list[Problem]:
     columns = _number_columns(solved)
     outer = _warp_outside(solved)
     found: list[Problem] = []
+
     for name, std in table.scatter.items():
         rows = np.flatnonzero(std > 0)
         if not len(rows):
@@ -94,11 +99,16 @@ def doubts(table: Family, solved: SolvedTable) -> list[Problem]:
             moved = part.measured[name] + sign * std[rows]
             numbers, refused = _identified_at(part, name, moved, columns)
             found += [
-                table.problem(rows[at], f"{name}_std", f"one standard deviation {word} the mean is no fabric: {why}")
+                table.problem(
+                    rows[at],
+                    f"{name}_std",
+                    f"one standard deviation {word} the mean is no fabric: {why}",
+                )
                 for at, why in refused.items()
             ]
             there = dict(zip(columns, numbers))
             turned |= np.where(np.isnan(numbers[0]), outer[rows], _outside(there)) != outer[rows]
+
         found += [
             table.problem(
                 rows[at],
@@ -109,6 +119,7 @@ def doubts(table: Family, solved: SolvedTable) -> list[Problem]:
             for at in np.flatnonzero(turned).tolist()
             if "fabric_thickness_mm" not in solved.columns["identified_by"][rows[at]]
         ]
+
     return sorted(found, key=lambda problem: problem.line or 0)
 
 
@@ -123,7 +134,9 @@ def _number_columns(solved: SolvedTable) -> list[str]:
 
 def _numbers(solved: SolvedTable, columns: Sequence[str]) -> np.ndarray:
     """Values of the columns, shape (columns, rows)."""
-    return np.array([solved.columns[column] for column in columns], dtype=float).reshape(len(columns), len(solved))
+    return np.array([solved.columns[column] for column in columns], dtype=float).reshape(
+        len(columns), len(solved)
+    )
 
 
 def _outside(columns: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -133,8 +146,12 @@ def _outside(columns: Mapping[str, np.ndarray]) -> np.ndarray:
 
 
 def _warp_outside(solved: SolvedTable) -> np.ndarray:
-    quantities = [f"{d}_{q}_mm" for d in DIRECTIONS for q in ("thickness", "amplitude")] + ["fabric_thickness_mm"]
-    return _outside({column: np.array(solved.columns[column], dtype=float) for column in quantities})
+    quantities = [f"{d}_{q}_mm" for d in DIRECTIONS for q in ("thickness", "amplitude")] + [
+        "fabric_thickness_mm"
+    ]
+    return _outside(
+        {column: np.array(solved.columns[column], dtype=float) for column in quantities}
+    )
 
 
 def _branch_kept(table: Family, solved: SolvedTable) -> Family:
@@ -143,7 +160,9 @@ def _branch_kept(table: Family, solved: SolvedTable) -> Family:
     return replace(table, thicker=tuple(asked or each for asked, each in zip(table.thicker, taken)))
 
 
-def _derivatives(table: Family, name: str, columns, centre: np.ndarray) -> tuple[np.ndarray, list[Problem]]:
+def _derivatives(
+    table: Family, name: str, columns, centre: np.ndarray
+) -> tuple[np.ndarray, list[Problem]]:
     """d columns / d ``measured[name]``, shape (columns, rows), and the rows that have none."""
     value = table.measured[name]
     step = _STEP * np.where(value > 0, value, table.scatter[name])
@@ -152,14 +171,20 @@ def _derivatives(table: Family, name: str, columns, centre: np.ndarray) -> tuple
     no_low, no_high = np.isnan(low).any(axis=0), np.isnan(high).any(axis=0)
     rise = np.where(no_high, centre, high) - np.where(no_low, centre, low)
     run = np.where(no_high, value, above) - np.where(no_low, value, below)
-    message = "neither a little more nor a little less than {:g} is a fabric: no scatter to propagate"
+    message = (
+        "neither a little more nor a little less than {:g} is a fabric: no scatter to propagate"
+    )
     wrong = [
-        table.problem(at, f"{name}_std", message.format(value[at])) for at in np.flatnonzero(no_low & no_high).tolist()
+        table.problem(at, f"{name}_std", message.format(value[at]))
+        for at in np.flatnonzero(no_low & no_high).tolist()
     ]
+
     return rise / np.where(no_low & no_high, np.nan, run), wrong
 
 
-def _identified_at(table: Family, name: str, values: np.ndarray, columns) -> tuple[np.ndarray, dict[int, str]]:
+def _identified_at(
+    table: Family, name: str, values: np.ndarray, columns
+) -> tuple[np.ndarray, dict[int, str]]:
     """Columns of the table with other values of one measurement, shape (columns, rows).
 
     Rows that are no fabric with it are NaN; second, why, by row number.
@@ -175,6 +200,7 @@ def _identified_at(table: Family, name: str, values: np.ndarray, columns) -> tup
         refused |= {at: why[table.names[at]] for at in good if table.names[at] in why}
         good = [at for at in good if at not in refused]
         numbers[:, good] = _numbers(identify(moved.take(good)), columns)
+
     return numbers, refused
 
 

@@ -79,7 +79,10 @@ def solutions(
 ) -> tuple[Solution, Solution]:
     """Both solutions of the two relations for every row; the same twice where one exists."""
     rows = len(identifying.number)
-    amplitudes = [transitions[d].rise * transitions[d].slope(crimp) for d, crimp in zip(DIRECTIONS, measured.closing)]
+    amplitudes = [
+        transitions[d].rise * transitions[d].slope(crimp)
+        for d, crimp in zip(DIRECTIONS, measured.closing)
+    ]
     values = np.concatenate([np.reshape(amplitudes, (2, rows)), measured.closing[2:]])
 
     first, second = (Closed(*np.full((4, rows), np.nan)) for _ in range(2))
@@ -109,7 +112,9 @@ class Choice:
         taken = second.closed.where(self.second, first.closed)
         return taken, first.closed.where(self.second, second.closed)
 
-    def refused(self, first: Mapping[int, Problem], second: Mapping[int, Problem]) -> dict[int, Problem]:
+    def refused(
+        self, first: Mapping[int, Problem], second: Mapping[int, Problem]
+    ) -> dict[int, Problem]:
         """The problems of the solutions taken, by row number."""
         return {
             row: problem
@@ -140,8 +145,10 @@ def choose(
         row_possible[list(problems)] = False
 
     asked_weft, asked_warp = (
-        np.array([thicker == direction for thicker in table.thicker], dtype=bool) for direction in DIRECTIONS
+        np.array([thicker == direction for thicker in table.thicker], dtype=bool)
+        for direction in DIRECTIONS
     )
     by_default = np.where(possible[0] & possible[1], more_even, possible[1])
     second_taken = differ & (asked_warp | (by_default & ~asked_weft))
+
     return Choice(second_taken, differ & possible[0] & possible[1])

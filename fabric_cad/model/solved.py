@@ -13,8 +13,9 @@ Columns, for weft and warp alike (``weft_...``, ``warp_...``), mm and 1/mm:
                             that plateau, kind ``float``, ``edge`` (turn on the right), ``turn``
 ``between_q``, ``between_end_mm``   both sides of the section between crossings
 
-and for both directions ``float_gap``: between two crossings of one float the section is the ``symmetric``
-one of the line above, or that of a ``flat`` contact, which is the crossings' own of the kind ``float``.
+and for both directions ``float_gap``: between two crossings of one float the section is the
+``symmetric`` one of the line above, or that of a ``flat`` contact, which is the crossings' own of
+the kind ``float``.
 """
 
 from __future__ import annotations
@@ -112,14 +113,18 @@ class SolvedFabric:
         """What all sections of a direction share."""
         solved = self.directions[direction]
         bottom, top = (
-            Split(solved.contact[plateau].half_chord, solved.contact[plateau].offset) for plateau in ("high", "low")
+            Split(solved.contact[plateau].half_chord, solved.contact[plateau].offset)
+            for plateau in ("high", "low")
         )
         return Frame(solved.width, solved.thickness, self.form, self.lateral_height, bottom, top)
 
     @property
     def period(self) -> tuple[float, float]:
         """Extents of the elementary cell along x and y, mm."""
-        return self.weave.warps * self.weft.crossed_spacing, self.weave.wefts * self.warp.crossed_spacing
+        return (
+            self.weave.warps * self.weft.crossed_spacing,
+            self.weave.wefts * self.warp.crossed_spacing,
+        )
 
     @property
     def lattice(self) -> Lattice:
@@ -137,7 +142,9 @@ class SolvedFabric:
             weave=Weave(over, under, step, tuple(cells.text("pattern").split())),
             section=cells.one_of("section", FORMS),
             lateral_height=cells.number("lateral_height_mm"),
-            float_gap=cells.one_of("float_gap", FLOAT_GAPS, default=FLOAT_GAPS[0]),  # older tables have none
+            float_gap=cells.one_of(
+                "float_gap", FLOAT_GAPS, default=FLOAT_GAPS[0]
+            ),  # older tables have none
             fabric_thickness=cells.number("fabric_thickness_mm"),
             weft=cells.direction("weft", "warp"),
             warp=cells.direction("warp", "weft"),
@@ -180,7 +187,9 @@ class _Cells:
         )
 
     def free_side(self, direction: str, plateau: str, kind: str) -> FreeSide:
-        q, v0, left, right = (self.number(f"{direction}_{plateau}_{kind}_{name}") for name in _FREE_SIDE)
+        q, v0, left, right = (
+            self.number(f"{direction}_{plateau}_{kind}_{name}") for name in _FREE_SIDE
+        )
         return FreeSide(q, v0, left, right)
 
     def direction(self, name: str, crossed: str) -> SolvedDirection:
@@ -195,9 +204,15 @@ class _Cells:
             amplitude=self.number(f"{name}_amplitude_mm"),
             p_low=self.parabola(name, "low"),
             p_high=self.parabola(name, "high"),
-            points=tuple((self.number(along), self.number(z)) for _, along, z in point_columns(name)),
+            points=tuple(
+                (self.number(along), self.number(z)) for _, along, z in point_columns(name)
+            ),
             contact={plateau: self.contact(name, crossed, plateau) for plateau in PLATEAUX},
-            free_sides={(plateau, kind): self.free_side(name, plateau, kind) for plateau in PLATEAUX for kind in KINDS},
+            free_sides={
+                (plateau, kind): self.free_side(name, plateau, kind)
+                for plateau in PLATEAUX
+                for kind in KINDS
+            },
             between=FreeSide(self.number(f"{name}_between_q"), 0.0, -end, end),
         )
 
@@ -231,7 +246,9 @@ class SolvedTable:
     def _number(self, name: str) -> int:
         """The number of a row. Raises :class:`UnknownRowError`, a KeyError."""
         if not isinstance(name, str):
-            raise ArgumentError(f"a row of a table is named by a text, not {type(name).__name__} {name!r:.60}")
+            raise ArgumentError(
+                f"a row of a table is named by a text, not {type(name).__name__} {name!r:.60}"
+            )
         if name not in self.names:
             raise UnknownRowError(f"no row is called {name!r}{did_you_mean(name, self.names)}")
         return self.names.index(name)
@@ -248,7 +265,9 @@ class SolvedTable:
     def only(self, name: str) -> SolvedTable:
         """The table of one row. Raises :class:`UnknownRowError`, a KeyError."""
         at = self._number(name)
-        return SolvedTable({c: [v[at]] for c, v in self.columns.items()}, self.comparisons[at : at + 1])
+        return SolvedTable(
+            {c: [v[at]] for c, v in self.columns.items()}, self.comparisons[at : at + 1]
+        )
 
     def write(self, path: str | Path) -> None:
         """Write the table as CSV; numbers so that reading gives the same bits."""
@@ -270,12 +289,20 @@ def read_solved(path: str | Path, name: str | None = None) -> SolvedFabric:
         raise InputError(Problem(f"cannot be read: {error.strerror}", str(path))) from error
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(Problem(f"not a table of text: {error}", str(path))) from error
+
     rows = [row for row in rows if name in (None, row.get("name"))]
     if not rows:
-        raise InputError(Problem("the table has no such row" if name else "the table is empty", str(path), row=name))
+        raise InputError(
+            Problem(
+                "the table has no such row" if name else "the table is empty", str(path), row=name
+            )
+        )
+
     try:
         return SolvedFabric.from_row(rows[0])
     except KeyError as error:
-        raise InputError(Problem("this column is missing", str(path), column=str(error.args[0]))) from error
+        raise InputError(
+            Problem("this column is missing", str(path), column=str(error.args[0]))
+        ) from error
     except (TypeError, ValueError) as error:
         raise InputError(Problem(str(error), str(path), row=rows[0].get("name"))) from error

@@ -26,7 +26,10 @@ _TURNS = dict(zip(KINDS, ((False, False), (False, True), (True, True))))
 
 
 def solved_columns(table: Family, solution: Solution, other: Closed, two: np.ndarray) -> Columns:
-    """Every column, of one value a row; ``other`` is what is not taken of ``two`` solutions, boolean (rows,)."""
+    """Every column, of one value a row.
+
+    ``other`` is what is not taken of ``two`` solutions, boolean (rows,).
+    """
     columns = _of_rows(table, solution)
     for direction in DIRECTIONS:
         columns |= _scalars(solution, direction)
@@ -38,6 +41,7 @@ def solved_columns(table: Family, solution: Solution, other: Closed, two: np.nda
         columns[f"other_{direction}_thickness_mm"] = [
             value if there else "" for value, there in zip(thickness.tolist(), two.tolist())
         ]
+
     return columns
 
 
@@ -71,7 +75,9 @@ def _parameters(table: Family, measured: Measured) -> np.ndarray:
     for form, rows in measured.forms:
         if form.parameters:
             a_direction[rows] = form.parameters
-    return np.where(measured.balanced, np.maximum(a_direction, 3), np.where(a_direction, 2 * a_direction, 7))
+    return np.where(
+        measured.balanced, np.maximum(a_direction, 3), np.where(a_direction, 2 * a_direction, 7)
+    )
 
 
 def _scalars(solution: Solution, direction: Direction) -> Columns:
@@ -94,15 +100,17 @@ def _scalars(solution: Solution, direction: Direction) -> Columns:
 def _crimp_identified(solution: Solution, direction: Direction) -> np.ndarray:
     """Boolean (rows,): a direction's measured crimp identified the row.
 
-    In a balanced row the weft's crimp is the warp's too where both float alike; a pattern's warps may
-    change sides more or less often than its wefts: then no one crimp is both's.
+    In a balanced row the weft's crimp is the warp's too where both float alike; a pattern's warps
+    may change sides more or less often than its wefts: then no one crimp is both's.
     """
     own = solution.identifying.uses(CLOSING.index(f"{direction}_crimp"))
     if direction is Direction.WEFT:
         return own
 
     weft, warp = (solution.transitions[d].projected for d in DIRECTIONS)
-    wefts = solution.identifying.where(lambda quantities: quantities == (CLOSING.index("weft_crimp"),))
+    wefts = solution.identifying.where(
+        lambda quantities: quantities == (CLOSING.index("weft_crimp"),)
+    )
     return own | (wefts & solution.measured.balanced & (weft == warp))
 
 

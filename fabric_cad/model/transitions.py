@@ -56,7 +56,10 @@ class Transitions:
 def transitions(table: Family, measured: Measured) -> dict[Direction, Transitions]:
     """Those of both directions."""
     floats = _mean_floats(table)
-    return {direction: _of_direction(measured, direction, *floats[direction]) for direction in DIRECTIONS}
+    return {
+        direction: _of_direction(measured, direction, *floats[direction])
+        for direction in DIRECTIONS
+    }
 
 
 def _of_direction(
@@ -81,7 +84,9 @@ def _of_direction(
 def _mean_floats(table: Family) -> Mapping[Direction, np.ndarray]:
     """Mean lengths of a direction's low and high floats, each of shape (2, rows), in crossed yarns."""
     weaves = {id(weave): weave for weave in table.weaves}  # many rows share one
-    known = {key: [weave.floats(direction) for direction in DIRECTIONS] for key, weave in weaves.items()}
+    known = {
+        key: [weave.floats(direction) for direction in DIRECTIONS] for key, weave in weaves.items()
+    }
 
     floats = np.array([known[id(weave)] for weave in table.weaves], dtype=float).reshape(-1, 2, 2)
     return {direction: floats[:, direction.axis].T for direction in DIRECTIONS}

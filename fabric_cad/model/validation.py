@@ -55,6 +55,8 @@ def spread_out(measured: Family, spread: Spread) -> list[tuple[str, ...]]:
     for at, name in enumerate(measured.names):
         if measured.scattered[at]:
             for label, quantity, factor in _SHOWN:
-                lines.append((name, label, *(shown(f"{d}_{quantity}", at, factor) for d in DIRECTIONS)))
+                lines.append(
+                    (name, label, *(shown(f"{d}_{quantity}", at, factor) for d in DIRECTIONS))
+                )
             lines.append((name, "fabric thickness mm", shown("fabric_thickness_mm", at), ""))
     return lines

@@ -56,7 +56,9 @@ def _lengthwise(swept: SweptYarn, place: float) -> CutYarn | None:
 
     crossings = len(swept.yarn.high)
     t = np.linspace(0.0, crossings * solved.crossed_spacing, _PER_CROSSING * crossings + 1)
-    bottom, top = (z[:, 0] for z in heights_of_skin(swept.fabric, swept.yarn, t, np.array([across])))
+    bottom, top = (
+        z[:, 0] for z in heights_of_skin(swept.fabric, swept.yarn, t, np.array([across]))
+    )
     outline = np.column_stack([np.concatenate([t, t[::-1]]), np.concatenate([bottom, top[::-1]])])
     return CutYarn(swept.yarn.body, outline, np.column_stack([t, _midline(swept, t)]))
 

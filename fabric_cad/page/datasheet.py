@@ -54,7 +54,9 @@ def datasheet(solution: Solution) -> Figure:
     known = [(each.label, each.text) for each in (*figures(solution), expected_quality(solution))]
     _table(figure.add_axes((0.45, 0.30, 0.47, 0.28)), "Figures of the model", known)
 
-    units = {column: NUMBERS[column].unit if column in NUMBERS else "" for column in solution.row.cells}
+    units = {
+        column: NUMBERS[column].unit if column in NUMBERS else "" for column in solution.row.cells
+    }
     measured = [
         (f"{column}{' *' * (column in solution.identified_by)}", f"{text:.60} {units[column]}")
         for column, text in solution.row.cells.items()
@@ -62,9 +64,14 @@ def datasheet(solution: Solution) -> Figure:
     ]
     _table(figure.add_axes((0.08, 0.08, 0.84, 0.20)), "As measured (* identifies)", measured)
 
-    told = [f"{name}: measured {one:.4g}, model {two:.4g}" for name, one, two in comparisons(solution)]
-    figure.text(0.08, 0.05, "\n".join([*told, *warnings(solution)])[:400], fontsize=7, va="top", wrap=True)
+    told = [
+        f"{name}: measured {one:.4g}, model {two:.4g}" for name, one, two in comparisons(solution)
+    ]
+    figure.text(
+        0.08, 0.05, "\n".join([*told, *warnings(solution)])[:400], fontsize=7, va="top", wrap=True
+    )
     figure.text(0.92, 0.02, f"fabric-cad {__version__}", fontsize=7, color="0.35", ha="right")
+
     return figure
 
 
@@ -74,8 +81,14 @@ def _draw_weave(solution: Solution, axes: Axes) -> None:
 
     matrix = solution.fabric.weave.interlacement()
     colours = ListedColormap([COLOURS[Direction.WARP], COLOURS[Direction.WEFT]])
-    axes.pcolormesh(matrix.astype(float), cmap=colours, vmin=0, vmax=1, edgecolors="white", linewidth=1)
-    axes.set(aspect="equal", xticks=np.arange(matrix.shape[1]) + 0.5, yticks=np.arange(matrix.shape[0]) + 0.5)
+    axes.pcolormesh(
+        matrix.astype(float), cmap=colours, vmin=0, vmax=1, edgecolors="white", linewidth=1
+    )
+    axes.set(
+        aspect="equal",
+        xticks=np.arange(matrix.shape[1]) + 0.5,
+        yticks=np.arange(matrix.shape[0]) + 0.5,
+    )
     axes.set_xticklabels([str(k + 1) for k in range(matrix.shape[1])], fontsize=6)
     axes.set_yticklabels([str(k + 1) for k in range(matrix.shape[0])], fontsize=6)
     axes.set_title("on top: weft orange, warp blue", fontsize=9, loc="left")

@@ -1,7 +1,8 @@
 """What the page asks and is answered: one session a tab, plain values in, plain values out, no server.
 
-Every answer is JSON: ``row`` (name, family, grid, quantities, refusals), and, where the fabric is another one,
-``scene``, so that a changed number is drawn after one question. Figures and cuts are asked for after that.
+Every answer is JSON: ``row`` (name, family, grid, quantities, refusals), and, where the fabric is
+another one, ``scene``, so that a changed number is drawn after one question. Figures and cuts are
+asked for after that.
 """
 
 from __future__ import annotations
@@ -39,7 +40,10 @@ Answer = dict[str, Any]
 
 @dataclass(frozen=True)
 class Places:
-    """Where rows are saved and results are written; both below the folder that the page was started in."""
+    """Where rows are saved and results are written.
+
+    Both below the folder that the page was started in.
+    """
 
     families: Path
     out: Path
@@ -93,19 +97,29 @@ class Desk:
         return self._tabs[tab]
 
     def _open(self, tab: str, link: str) -> Answer:
-        """A tab's first question, with the link in its address; where that is none, the row of the command."""
+        """A tab's first question, with the link in its address.
+
+        Where that is none, the row of the command.
+        """
         told = {}
         try:
             session = Session(row_of(_text(link, 40_000))) if link else Session(self._first)
         except InputError as error:
-            session, told = Session(self._first), {"problem": f"the address holds no fabric: {_sentence(error)}"}
+            session, told = (
+                Session(self._first),
+                {"problem": f"the address holds no fabric: {_sentence(error)}"},
+            )
+
         self._tabs[tab] = session
         while len(self._tabs) > MOST_TABS:
             self._tabs.popitem(last=False)
+
         return self._answer(session, None) | told
 
     def _change(self, tab: str, column: str, text: str, moving: bool) -> Answer:
-        return self._after(tab, lambda s: s.change(_text(column, 80), _text(text, 400), bool(moving)))
+        return self._after(
+            tab, lambda s: s.change(_text(column, 80), _text(text, 400), bool(moving))
+        )
 
     def _flip(self, tab: str, crossings: Sequence[Sequence[int]]) -> Answer:
         pairs = [(int(weft), int(warp)) for weft, warp in crossings]
@@ -116,7 +130,9 @@ class Desk:
 
     def _weave(self, tab: str, family: str, cells: Mapping[str, object]) -> Answer:
         """Another weave: a family with its columns; a pattern starts from the weave that stands."""
-        texts = {column: _text(str(cells[column]), 11_000) for column in WEAVE_COLUMNS[_text(family, 20)]}
+        texts = {
+            column: _text(str(cells[column]), 11_000) for column in WEAVE_COLUMNS[_text(family, 20)]
+        }
         return self._after(tab, lambda s: s.edit(s.row.woven(family, **texts)))
 
     def _draft(self, tab: str, name: str, text: str) -> Answer:
@@ -128,7 +144,9 @@ class Desk:
             try:
                 pattern = written(read_wif(copy))
             except InputError as error:
-                raise InputError([replace(problem, path=name) for problem in error.problems]) from error
+                raise InputError(
+                    [replace(problem, path=name) for problem in error.problems]
+                ) from error
         return self._after(tab, lambda s: s.edit(s.row.woven("pattern", pattern=pattern)))
 
     def _undo(self, tab: str) -> Answer:
@@ -151,7 +169,9 @@ class Desk:
             "row": {
                 "name": row.name,
                 "family": row.family,
-                "weave": {column: row.cells.get(column, "") for column in WEAVE_COLUMNS[row.family]},
+                "weave": {
+                    column: row.cells.get(column, "") for column in WEAVE_COLUMNS[row.family]
+                },
                 "grid": list(row.grid()),
                 "texts": {name: row.cells.get(name, "") for name in (*CHOICES, "source", "notes")},
                 "choices": listed,
@@ -164,6 +184,7 @@ class Desk:
                 "kind": kind_of(good),
             }
         }
+
         return told if good is before else told | {"scene": scene(good.fabric)}
 
     def _figures(self, tab: str) -> Answer:
@@ -185,7 +206,11 @@ class Desk:
         along = Direction(direction)
         place = min(max(float(share), 0.0), 1.0) * fabric.period[along.other.axis]
         cut = cut_fabric(fabric, along, place)
-        return {"svg": cut_drawing(fabric, cut), "caption": cut_caption(fabric, cut), "place": place}
+        return {
+            "svg": cut_drawing(fabric, cut),
+            "caption": cut_caption(fabric, cut),
+            "place": place,
+        }
 
     def _save(self, tab: str, name: str, over: bool) -> Answer:
         """Save the row into its table; never over one that is there unless ``over`` says so."""
@@ -195,7 +220,9 @@ class Desk:
         session.edit(row)
         added = f", with the new columns {', '.join(saved.added)}" if saved.added else ""
         verb = "changed in" if saved.replaced else "added to"
-        return self._answer(session, session.good) | {"done": f"{row.name} {verb} {saved.path}{added}"}
+        return self._answer(session, session.good) | {
+            "done": f"{row.name} {verb} {saved.path}{added}"
+        }
 
     def _page(self, tab: str) -> Answer:
         """The fabric in view as one HTML file."""

@@ -15,7 +15,11 @@ from .document import fabric_page
 from .drawing import cut_caption, cut_drawing
 from .edited import solution_of
 
-_QUANTITIES = (("crimp %", "crimp", 100.0), ("thickness mm", "thickness", 1.0), ("width mm", "width", 1.0))
+_QUANTITIES = (
+    ("crimp %", "crimp", 100.0),
+    ("thickness mm", "thickness", 1.0),
+    ("width mm", "width", 1.0),
+)
 
 
 class Shown:
@@ -31,12 +35,15 @@ class Shown:
 def show(row: Family, height: int = 640) -> Shown:
     """The page of a table of one row, to be turned and cut in a notebook; ``height`` in pixels.
 
-    Raises :class:`ArgumentError` where it is no table of one row, :class:`InputError` where it is no fabric.
+    Raises :class:`ArgumentError` where it is no table of one row, :class:`InputError` where it is
+    no fabric.
     """
     expect_row(row)
     page = escape(fabric_page(solution_of(row)).text, quote=True)
     style = f"width: 100%; height: {int(height)}px; border: 1px solid #ccc"
-    return Shown(f'<iframe sandbox="allow-scripts" srcdoc="{page}" style="{style}" title="{row.names[0]}"></iframe>')
+    return Shown(
+        f'<iframe sandbox="allow-scripts" srcdoc="{page}" style="{style}" title="{row.names[0]}"></iframe>'
+    )
 
 
 def picture_and_table(fabric: SolvedFabric) -> str:

@@ -1,8 +1,8 @@
 """One fabric as one HTML file that opens without a server or network: the cell to turn, its numbers, its cuts.
 
-The cell is drawn by the viewer beside this module, 200 lines of WebGL2. Of what is installed anyway only
-trame-vtk brings a client that draws in three dimensions, 1.7 MB of script for each file, and three.js comes
-with no package of the environment; tiles need instancing, one shader and an orbit.
+The cell is drawn by the viewer beside this module, 200 lines of WebGL2. Of what is installed anyway
+only trame-vtk brings a client that draws in three dimensions, 1.7 MB of script for each file, and
+three.js comes with no package of the environment; tiles need instancing, one shader and an orbit.
 """
 
 from __future__ import annotations
@@ -65,7 +65,9 @@ def fabric_page(solution: Solution) -> Page:
     """The page of a fabric. It asks for nothing from outside, and its policy forbids it."""
     name = solution.fabric.name
     cuts = [
-        cut_fabric(solution.fabric, direction, solution.fabric.crossed(direction).crossed_spacing / 2)
+        cut_fabric(
+            solution.fabric, direction, solution.fabric.crossed(direction).crossed_spacing / 2
+        )
         for direction in DIRECTIONS
     ]
     drawn = "".join(
@@ -84,6 +86,7 @@ def fabric_page(solution: Solution) -> Page:
         f'<script type="application/json" id="scene">{_json(scene(solution.fabric))}</script>'
         f"<script>{client('viewer.js')}</script><script>{client('page.js')}</script>"
     )
+
     return Page(name, html(name, body))
 
 
@@ -97,7 +100,9 @@ def gallery_page(solutions: Iterable[Solution], title: str = "Fabrics") -> Page:
             f'<li><a href="{escape(fabric.name)}.html"><strong>{escape(fabric.name)}</strong>'
             f"{cut_drawing(fabric, cut)}<span>{escape(kind_of(solution))}</span></a></li>"
         )
-    return Page("index", html(title, f'<h1>{escape(title)}</h1><ul class="gallery">{"".join(entries)}</ul>'))
+    return Page(
+        "index", html(title, f'<h1>{escape(title)}</h1><ul class="gallery">{"".join(entries)}</ul>')
+    )
 
 
 def html(title: str, body: str) -> str:

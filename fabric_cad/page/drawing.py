@@ -24,8 +24,13 @@ def cut_drawing(fabric: SolvedFabric, cut: Cut, stretch: float = 2.0) -> str:
     box = f"{-margin:.5g} {-heights.max() - margin:.5g} {width:.5g} {height:.5g}"
 
     shapes = [_yarn(yarn, stretch, cut.length) for yarn in cut.yarns]
-    shapes += [_control_points(fabric, yarn, stretch, cut.length) for yarn in cut.yarns if len(yarn.midline) > 1]
+    shapes += [
+        _control_points(fabric, yarn, stretch, cut.length)
+        for yarn in cut.yarns
+        if len(yarn.midline) > 1
+    ]
     label = f"cut along the {cut.direction}s at {'yx'[cut.direction.axis]} = {cut.place:.4g} mm"
+
     return (
         f'<svg class="cut" viewBox="{box}" role="img" aria-label="{escape(label)}" '
         f'preserveAspectRatio="xMidYMid meet" xmlns="http://www.w3.org/2000/svg">{"".join(shapes)}</svg>'
@@ -52,7 +57,9 @@ def _yarn(yarn: CutYarn, stretch: float, length: float) -> str:
     if len(yarn.midline) == 1:
         return fill
     dashes = f"{length / 150:.3g}"
-    line = f'fill="none" stroke="#222" stroke-width="{length / 900:.3g}" stroke-dasharray="{dashes}"'
+    line = (
+        f'fill="none" stroke="#222" stroke-width="{length / 900:.3g}" stroke-dasharray="{dashes}"'
+    )
     return fill + f'<path d="{_path(yarn.midline, stretch)}" {line}/>'
 
 

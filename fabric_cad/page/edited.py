@@ -29,8 +29,8 @@ MOST_EDITED = 32
 class EditedRow:
     """A row as texts: ``cells`` maps columns to what stands in them, without empty ones and :data:`DEFAULTS`.
 
-    Numbers are in the units that quantities are kept in. Raises :class:`InputError` for a family or a column
-    that there is none of; what a text says is only judged by :func:`answer`.
+    Numbers are in the units that quantities are kept in. Raises :class:`InputError` for a family or
+    a column that there is none of; what a text says is only judged by :func:`answer`.
     """
 
     family: str
@@ -48,7 +48,9 @@ class EditedRow:
             raise InputError([Problem(word, column=column) for column in unknown])
 
         texts = {column: text.strip() for column, text in self.cells.items()}
-        filled = {column: text for column, text in texts.items() if text not in ("", DEFAULTS.get(column))}
+        filled = {
+            column: text for column, text in texts.items() if text not in ("", DEFAULTS.get(column))
+        }
         object.__setattr__(self, "cells", MappingProxyType(filled))
 
     @property
@@ -67,7 +69,10 @@ class EditedRow:
         return EditedRow(family, kept | cells)
 
     def grid(self) -> tuple[str, ...]:
-        """The interlacement, a text of ``1`` (weft over) and ``0`` a weft; () where the cells give none."""
+        """The interlacement, a text of ``1`` (weft over) and ``0`` a weft.
+
+        () where the cells give none.
+        """
         try:
             if self.family == "pattern":
                 return read_pattern(self.cells.get("pattern", ""))
@@ -126,6 +131,7 @@ def answer(row: EditedRow) -> Solution | tuple[Problem, ...]:
         for name, values in identified.columns.items()
     }
     solved = SolvedTable(columns, identified.comparisons())
+
     return Solution(row, table, identified, solved, solved[table.names[0]])
 
 

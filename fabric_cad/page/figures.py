@@ -52,8 +52,8 @@ _SHOWN = (  # key of a study's figures, label, unit, factor, column of the solve
 def figures(solution: Solution) -> tuple[Figure, ...]:
     """The figures of a fabric that are known: those of ``report.json`` before there is any CAD.
 
-    Volumes of round sections have no closed form and are left out. An expected scaled Jacobian is not
-    among them (:func:`expected_quality`).
+    Volumes of round sections have no closed form and are left out. An expected scaled Jacobian is
+    not among them (:func:`expected_quality`).
     """
     found, std = identified_figures(solution.table, solution.identified), _spread(solution)
     known = []
@@ -73,7 +73,9 @@ def expected_quality(solution: Solution) -> Figure:
 
 def warnings(solution: Solution) -> tuple[str, ...]:
     """Sentences on what is seldom true of a fabric."""
-    return tuple(problem.message for problem in implausible(solution.table, solution.identified.columns))
+    return tuple(
+        problem.message for problem in implausible(solution.table, solution.identified.columns)
+    )
 
 
 def comparisons(solution: Solution) -> tuple[tuple[str, float, float], ...]:
@@ -82,7 +84,10 @@ def comparisons(solution: Solution) -> tuple[tuple[str, float, float], ...]:
 
 
 def _spread(solution: Solution) -> dict[str, float]:
-    """Standard deviations of solved columns; none where the row gives no scatter, or it leaves the fabrics."""
+    """Standard deviations of solved columns.
+
+    None where the row gives no scatter, or it leaves the fabrics.
+    """
     if not solution.table.scattered[0]:
         return {}
     try:

@@ -1,8 +1,8 @@
 """Who may speak to the page: this machine's browser, from the page itself.
 
-The socket's first message must hold the token that is in the page's address (wslink's own rule). What a
-browser adds is checked here: a page of another origin, or of a name that was made to point at the loopback
-(DNS rebinding), is refused before anything is read.
+The socket's first message must hold the token that is in the page's address (wslink's own rule).
+What a browser adds is checked here: a page of another origin, or of a name that was made to point
+at the loopback (DNS rebinding), is refused before anything is read.
 """
 
 from __future__ import annotations
@@ -40,13 +40,16 @@ def guard(port: int) -> Callable:
     host = f"{LOOPBACK}:{port}"
 
     @web.middleware
-    async def guarded(request: Request, handler: Callable[[Request], Awaitable[StreamResponse]]) -> StreamResponse:
+    async def guarded(
+        request: Request, handler: Callable[[Request], Awaitable[StreamResponse]]
+    ) -> StreamResponse:
         if fault := _fault(request.headers, request.method, request.path, host):
             return web.Response(status=403, text=fault, headers=_HEADERS)
         try:
             response = await handler(request)
         except ConnectionError:  # a tab that was closed while it was answered
             return web.Response(status=400)
+
         if not response.prepared:
             response.headers.update(_HEADERS)
         return response
@@ -62,9 +65,12 @@ def _fault(headers, method: str, path: str, host: str) -> str | None:
     is_socket = headers.get("Upgrade", "").lower() == "websocket"
     if origin not in (None, f"http://{host}") or (is_socket and origin is None):
         return "another origin"
-    is_visit = headers.get("Sec-Fetch-Mode") == "navigate" and headers.get("Sec-Fetch-Dest") == "document"
+    is_visit = (
+        headers.get("Sec-Fetch-Mode") == "navigate" and headers.get("Sec-Fetch-Dest") == "document"
+    )
     if headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin") and not is_visit:
         return "another site"  # a visit from elsewhere shows the page, which is nothing without the token
     if method not in ("GET", "HEAD", "POST") or (method == "POST" and path != "/paraview/"):
         return "not asked for here"
+
     return None

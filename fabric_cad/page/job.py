@@ -30,6 +30,7 @@ def main() -> int:
         return error.exit_status
     except KeyboardInterrupt:
         return 1
+
     return 0
 
 

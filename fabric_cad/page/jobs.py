@@ -64,7 +64,12 @@ class Job:
 
     def told(self) -> dict[str, Any]:
         """How it stands, for the page."""
-        return {"state": self.state, "stages": list(self.stages), "problem": self.problem, "row": self.row.name}
+        return {
+            "state": self.state,
+            "stages": list(self.stages),
+            "problem": self.problem,
+            "row": self.row.name,
+        }
 
     def file(self, kind: str) -> Path:
         """Where a file of the row is. Raises KeyError for a kind that there is none of."""
@@ -81,6 +86,7 @@ class Job:
             process.stdin.close()
         except BrokenPipeError:
             pass
+
         for line in process.stdout:
             name, seconds = json.loads(line)
             if self.stages and self.stages[-1][0] == name:

@@ -26,12 +26,17 @@ def row_of(link: str) -> EditedRow:
 
     family, _, query = link.partition("?")
     try:
-        pairs = parse_qsl(query, keep_blank_values=True, strict_parsing=bool(query), errors="strict")
+        pairs = parse_qsl(
+            query, keep_blank_values=True, strict_parsing=bool(query), errors="strict"
+        )
     except ValueError as error:
         raise InputError(f"the link holds no row: {error}") from error
 
     cells = dict(pairs)
     twice = [column for column in cells if [name for name, _ in pairs].count(column) > 1]
     if twice:
-        raise InputError([Problem("this column stands twice in the link", column=column) for column in twice])
+        raise InputError(
+            [Problem("this column stands twice in the link", column=column) for column in twice]
+        )
+
     return EditedRow(family, cells)

@@ -34,11 +34,12 @@ class RowExistsError(InputError):
 def save_row(row: EditedRow, families: str | Path, replace: bool = False) -> Saved:
     """Add a row to the CSV of its family in a folder, or with ``replace`` change the one of its name.
 
-    Columns that the table does not have yet are added at the end of its header; a table that is not there is
-    begun. What would be written is first read by the strict reader: raises :class:`InputError` with the
-    problems of the row, or where its name is taken (:class:`RowExistsError`, in this table), or where the
-    table is a workbook or not UTF-8; :class:`OutputError` where it cannot be written. The file is exchanged
-    in one step, or as it was.
+    Columns that the table does not have yet are added at the end of its header; a table that is not
+    there is begun. What would be written is first read by the strict reader: raises
+    :class:`InputError` with the problems of the row, or where its name is taken
+    (:class:`RowExistsError`, in this table), or where the table is a workbook or not UTF-8;
+    :class:`OutputError` where it cannot be written. The file is exchanged in one step, or as it
+    was.
     """
     path = _table(row, Path(families))
     before = read_input(path) if path.exists() else _begun(row)
@@ -54,7 +55,9 @@ def save_row(row: EditedRow, families: str | Path, replace: bool = False) -> Sav
 def _table(row: EditedRow, families: Path) -> Path:
     files = table_files(families).get(row.family, []) if families.is_dir() else []
     if len(files) > 1 or files and files[0].suffix != ".csv":
-        message = "rows are saved into text tables only; save this one as CSV, and keep one of its kind"
+        message = (
+            "rows are saved into text tables only; save this one as CSV, and keep one of its kind"
+        )
         raise InputError(Problem(message, str(files[0])))
 
     path = files[0] if files else families / f"{row.family}.csv"
@@ -79,15 +82,23 @@ def _is_taken(row: EditedRow, families: Path, replace: bool) -> bool:
             if family == row.family:
                 raise table
             continue
+
         names = {*table.names, *(problem.row or "" for problem in table.refused)}
         if row.name.lower() not in {name.lower() for name in names}:
             continue
         if family != row.family:
-            raise InputError(Problem(f"this row name is in {family}.csv; choose another", column="name", row=row.name))
+            raise InputError(
+                Problem(
+                    f"this row name is in {family}.csv; choose another", column="name", row=row.name
+                )
+            )
+
         if not replace:
             message = "a row of this name is there already; replace it, or choose another name"
             raise RowExistsError(Problem(message, table.path, column="name", row=row.name))
+
         taken = True
+
     return taken
 
 
@@ -98,30 +109,42 @@ def _check(row: EditedRow, encoded: bytes, name: str) -> None:
         copy.write_bytes(encoded)
         table = read_family(copy, partial=True)
 
-    problems = [problem for problem in table.refused if (problem.row or "").lower() == row.name.lower()]
-    problems += [problem for problem in table.refused if problem.column == "name" and not problem.row]
+    problems = [
+        problem for problem in table.refused if (problem.row or "").lower() == row.name.lower()
+    ]
+    problems += [
+        problem for problem in table.refused if problem.column == "name" and not problem.row
+    ]
     if row.name not in table:
         told = problems or [Problem("the row has no name", column="name")]
-        raise InputError([Problem(problem.message, column=problem.column, row=row.name) for problem in told])
+        raise InputError(
+            [Problem(problem.message, column=problem.column, row=row.name) for problem in told]
+        )
 
     back, given = edited(table[row.name]), row
     for column in {*back.cells, *given.cells}:
         if not is_same(back.cells.get(column, ""), given.cells.get(column, ""), comma=False):
-            raise InputError(Problem("this cell would not be read back as it was written", column=column))
+            raise InputError(
+                Problem("this cell would not be read back as it was written", column=column)
+            )
 
 
 def _exchange(path: Path, encoded: bytes) -> None:
     """Put the new bytes in a file's place in one step."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
+        with tempfile.NamedTemporaryFile(
+            dir=path.parent, prefix=f".{path.name}.", delete=False
+        ) as file:
             file.write(encoded)
             file.flush()
             os.fsync(file.fileno())
+
         if path.exists():
             os.chmod(file.name, path.stat().st_mode & 0o777)
         else:
             os.chmod(file.name, 0o644)
+
         os.replace(file.name, path)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error

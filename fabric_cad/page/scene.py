@@ -1,7 +1,7 @@
 """A fabric's tiles as the numbers that the page's viewer draws, small enough for a link's answer or a file.
 
-Points are 16 bits of their group's box, normals 8 bits: 12 bytes a point, an error of 1/65000 of a yarn, which
-no picture shows. Nothing is computed from them.
+Points are 16 bits of their group's box, normals 8 bits: 12 bytes a point, an error of 1/65000 of a
+yarn, which no picture shows. Nothing is computed from them.
 """
 
 from __future__ import annotations
@@ -27,20 +27,23 @@ _LEVEL = 1e-9  # mm, by which points of a contact's rim may miss it
 def scene(fabric: SolvedFabric) -> dict[str, Any]:
     """What ``viewer.js`` draws: JSON of a fabric's cell, arrays in base64.
 
-    ``period`` (x, y) and ``thickness`` in mm; every group has ``tiles`` shapes of ``size`` points each. A
-    point is middle + extent times its 16-bit numbers as -1 to 1; the fourth number of a normal says whether
-    the crossed yarn touches there. Shape ``tile[k]`` stands at the k-th of ``places`` and is of ``yarn[k]``.
+    ``period`` (x, y) and ``thickness`` in mm; every group has ``tiles`` shapes of ``size`` points
+    each. A point is middle + extent times its 16-bit numbers as -1 to 1; the fourth number of a
+    normal says whether the crossed yarn touches there. Shape ``tile[k]`` stands at the k-th of
+    ``places`` and is of ``yarn[k]``.
     """
     matrix = fabric.weave.interlacement()
     tiles = sum(len(np.unique(tile_codes(matrix, direction))) for direction in DIRECTIONS)
     grid = COARSE if matrix.size >= MANY or tiles >= MANY_TILES else Grid()
     groups = []
+
     for tiled in tessellate(fabric, grid):
         touching = _touching(fabric, tiled)
         groups += [
             _group(tiled.direction, tiled.tiles, touching),
             _group(tiled.direction, tiled.caps, np.zeros(tiled.caps.points.shape[:2], dtype=bool)),
         ]
+
     return {"period": fabric.period, "thickness": fabric.fabric_thickness, "groups": groups}
 
 
@@ -54,7 +57,9 @@ def _touching(fabric: SolvedFabric, tiled: TiledYarns) -> np.ndarray:
     plateaux = ["high" if each else "low" for each in high]
     half_across = np.array([own.contact[plateau].half_chord for plateau in plateaux])[:, None]
     facing = {"high": "low", "low": "high"}
-    half_along = np.array([crossed.contact[facing[plateau]].half_chord for plateau in plateaux])[:, None]
+    half_along = np.array([crossed.contact[facing[plateau]].half_chord for plateau in plateaux])[
+        :, None
+    ]
 
     along = tiles.points[..., direction.axis] - own.crossed_spacing / 2
     across = tiles.points[..., direction.other.axis]

@@ -1,4 +1,7 @@
-"""The page on the loopback: trame mounts it and carries its questions; only its own page and token are answered."""
+"""The page on the loopback: trame mounts it and carries its questions.
+
+Only its own page and token are answered.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,9 @@ def inside_here(folder: str | Path) -> Path:
     """A folder below the current one, as an absolute path. Raises :class:`OutputError` for any other."""
     place, here = Path(folder).resolve(), Path.cwd().resolve()
     if not place.is_relative_to(here):
-        raise OutputError(f"{folder}: is not in the folder that the page is started in, {here}, and it writes no other")
+        raise OutputError(
+            f"{folder}: is not in the folder that the page is started in, {here}, and it writes no other"
+        )
     return place
 
 
@@ -63,13 +68,16 @@ def serve(
 ) -> None:
     """Serve the page of a row until it is stopped; ``told`` is called with its address once it answers.
 
-    Raises :class:`InputError` where the row is no fabric, :class:`OutputError` where the port is taken.
+    Raises :class:`InputError` where the row is no fabric, :class:`OutputError` where the port is
+    taken.
     """
     desk = Desk(row, places)
     address = Address(_free_port(port), new_token())
     os.environ["WSLINK_READY_MSG"] = ""  # which would be printed among what the command prints
     os.environ["WSLINK_WS_COMPRESS"] = "0"  # on the loopback, packing takes longer than sending
-    logging.getLogger("wslink").setLevel(logging.CRITICAL)  # a tab that is closed while it is answered is no error
+    logging.getLogger("wslink").setLevel(
+        logging.CRITICAL
+    )  # a tab that is closed while it is answered is no error
 
     from trame.app import get_server
     from trame.ui.html import DivLayout
@@ -82,7 +90,9 @@ def serve(
         layout.root.add_child("<fabric-design></fabric-design>")
 
     jobs = _answer(server, desk)
-    server.controller.on_server_bind.add(lambda bound: bound.app.middlewares.append(guard(address.port)))
+    server.controller.on_server_bind.add(
+        lambda bound: bound.app.middlewares.append(guard(address.port))
+    )
     server.controller.on_server_ready.add(lambda **_: told(address))
     try:
         server.start(
@@ -106,7 +116,9 @@ def _free_port(port: int) -> int:
         try:
             probe.bind((LOOPBACK, port))
         except OSError as error:
-            raise OutputError(f"port {port} of {LOOPBACK} cannot be used: {error.strerror}") from error
+            raise OutputError(
+                f"port {port} of {LOOPBACK} cannot be used: {error.strerror}"
+            ) from error
         return probe.getsockname()[1]
 
 
@@ -160,9 +172,14 @@ def _answer(server: Any, desk: Desk) -> dict[str, Job]:
 
 
 def open_browser(address: Address) -> None:
-    """Open the page in a browser; the token goes through a file that only the user can read, not its arguments."""
+    """Open the page in a browser.
+
+    The token goes through a file that only the user can read, not its arguments.
+    """
     text = f'<!DOCTYPE html><meta http-equiv="refresh" content="0;url={escape(address.url)}"><title>fabric-cad</title>'
-    with tempfile.NamedTemporaryFile("w", suffix=".html", prefix="fabric-cad-", delete=False) as file:
+    with tempfile.NamedTemporaryFile(
+        "w", suffix=".html", prefix="fabric-cad-", delete=False
+    ) as file:
         file.write(text)
     atexit.register(Path(file.name).unlink, missing_ok=True)
     webbrowser.open(Path(file.name).as_uri())

@@ -1,7 +1,8 @@
 """One person's editing of one row: what is drawn, what is refused, and the way back.
 
-A session knows no server and no drawing. It holds the row as it stands, the last row that was a fabric, which
-stays in view while what stands is refused, and the rows before and after for undo and redo.
+A session knows no server and no drawing. It holds the row as it stands, the last row that was a
+fabric, which stays in view while what stands is refused, and the rows before and after for undo and
+redo.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ _RANGE = (0.4, 1.8)  # of the value, which a slider spans
 class Quantity:
     """One column of numbers as the page shows it.
 
-    ``role`` is ``identifies`` (the fabric is identified by it), ``compared`` (measured beyond need), ``given``
-    (another measurement), ``follows`` (empty; ``model`` is the model's value) or ``empty``. ``bound`` says
-    in words what the number must keep; ``span`` are the ends of its slider.
+    ``role`` is ``identifies`` (the fabric is identified by it), ``compared`` (measured beyond
+    need), ``given`` (another measurement), ``follows`` (empty; ``model`` is the model's value) or
+    ``empty``. ``bound`` says in words what the number must keep; ``span`` are the ends of its
+    slider.
     """
 
     column: str
@@ -71,7 +73,8 @@ class Session:
     def edit(self, row: EditedRow, moving: str = "") -> None:
         """Take a row in place of the one that stands.
 
-        Edits one after the other that are ``moving`` the same, such as one slider, are one step to undo.
+        Edits one after the other that are ``moving`` the same, such as one slider, are one step to
+        undo.
         """
         if row == self.row:
             return
@@ -124,8 +127,15 @@ class Session:
             role = "given" if text else "empty"
 
         kept = NUMBERS[column]
-        bound = f"not {kept.bound.word}" if not kept.bound.word.startswith("not ") else kept.bound.word[4:]
-        return Quantity(column, text, kept.unit, bound, role, model, self._span(column, model), refusal)
+        bound = (
+            f"not {kept.bound.word}"
+            if not kept.bound.word.startswith("not ")
+            else kept.bound.word[4:]
+        )
+
+        return Quantity(
+            column, text, kept.unit, bound, role, model, self._span(column, model), refusal
+        )
 
     def _span(self, column: str, model: float | None) -> tuple[float, float]:
         """A slider's ends: around the value it first had, so that they do not move under the hand."""

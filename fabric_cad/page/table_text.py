@@ -22,12 +22,15 @@ def with_row(row: EditedRow, before: bytes, path: Path) -> tuple[str, tuple[str,
     try:
         text = before.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(Problem("not UTF-8 text; save the table as 'CSV UTF-8'", str(path))) from error
+        raise InputError(
+            Problem("not UTF-8 text; save the table as 'CSV UTF-8'", str(path))
+        ) from error
 
     with tempfile.TemporaryDirectory() as scratch:
         copy = Path(scratch) / path.name
         copy.write_bytes(before)
         records = read_csv(copy)
+
     lines = _lines(text)
     ending = next((found[0] for line in lines if (found := _ENDING.search(line))), "\n")
 
@@ -38,14 +41,25 @@ def with_row(row: EditedRow, before: bytes, path: Path) -> tuple[str, tuple[str,
         last = first + _length(lines, first, records.separator) - 1
         body = lines[last].rstrip("\r\n")
         named = _csv_line(added, records.separator)
-        lines[last] = f"{body.rstrip(f' {records.separator}')}{records.separator}{named}{lines[last][len(body) :]}"
+        lines[last] = (
+            f"{body.rstrip(f' {records.separator}')}{records.separator}{named}{lines[last][len(body) :]}"
+        )
         header = (*header, *added)
 
-    own = next((line for line in records.lines[1:] if _name(line.cells, header).lower() == row.name.lower()), None)
+    own = next(
+        (
+            line
+            for line in records.lines[1:]
+            if _name(line.cells, header).lower() == row.name.lower()
+        ),
+        None,
+    )
     if own is None or own.line is None:
         if lines and not lines[-1].endswith(("\n", "\r")):
             lines[-1] += ending
-        return "".join([*lines, _csv_line(_cells(row, header, records, ()), records.separator), ending]), added
+        return "".join(
+            [*lines, _csv_line(_cells(row, header, records, ()), records.separator), ending]
+        ), added
 
     first, count = own.line - 1, _length(lines, own.line - 1, records.separator)
     end = _ENDING.search(lines[first + count - 1])
@@ -54,10 +68,16 @@ def with_row(row: EditedRow, before: bytes, path: Path) -> tuple[str, tuple[str,
     return "".join(lines), added
 
 
-def _cells(row: EditedRow, header: Sequence[str], records: Records, former: Sequence[str]) -> list[str]:
-    """The row's texts under a header; a cell that says the same as its former text is left as it was written."""
+def _cells(
+    row: EditedRow, header: Sequence[str], records: Records, former: Sequence[str]
+) -> list[str]:
+    """The row's texts under a header.
+
+    A cell that says the same as its former text is left as it was written.
+    """
     comma = records.separator == ";"
     cells = []
+
     for place, column in enumerate(header):
         kept, factor = kept_column(column)
         old, new = former[place] if place < len(former) else "", row.cells.get(kept, "")
@@ -67,6 +87,7 @@ def _cells(row: EditedRow, header: Sequence[str], records: Records, former: Sequ
         if not is_default and not is_same(old, new, comma):
             old = new.replace(".", ",") if comma and kept in NUMBERS else new
         cells.append(old)
+
     return cells
 
 
@@ -82,14 +103,21 @@ def is_same(old: str, new: str, comma: bool) -> bool:
 
 
 def _lines(text: str) -> list[str]:
-    """Lines with their endings; those of the strict reader, which knows no others than these three."""
+    """Lines with their endings.
+
+    Those of the strict reader, which knows no others than these three.
+    """
     ends = [found.end() for found in _ENDING.finditer(text)]
     return [line for line in (text[a:b] for a, b in zip([0, *ends], [*ends, len(text)])) if line]
 
 
 def _length(lines: Sequence[str], first: int, separator: str) -> int:
     """How many lines a record takes, whose quoted cells may hold line breaks."""
-    reader = csv.reader((_ENDING.sub("\n", line) for line in lines[first:]), delimiter=separator, skipinitialspace=True)
+    reader = csv.reader(
+        (_ENDING.sub("\n", line) for line in lines[first:]),
+        delimiter=separator,
+        skipinitialspace=True,
+    )
     next(reader)
     return reader.line_num
 

@@ -31,7 +31,9 @@ def show_cell(mesh: Mesh, title: str) -> None:
     Raises :class:`OutputError` without a display.
     """
     if _no_display():
-        raise OutputError("no display to open a window on (DISPLAY is not set); the picture is in the cell's folder")
+        raise OutputError(
+            "no display to open a window on (DISPLAY is not set); the picture is in the cell's folder"
+        )
 
     plotter = _scene_of(mesh)
     plotter.add_axes()

@@ -43,7 +43,9 @@ def _add_matrix(plotter, mesh: Mesh) -> None:
     skin = skin.extract_cells(np.flatnonzero(is_outside)).extract_surface(algorithm=None)
     plotter.add_mesh(skin, **_MATRIX)
     plotter.add_mesh(
-        skin.extract_feature_edges(feature_angle=70, boundary_edges=False, non_manifold_edges=False),
+        skin.extract_feature_edges(
+            feature_angle=70, boundary_edges=False, non_manifold_edges=False
+        ),
         color="#606850",
         line_width=1.0,
     )

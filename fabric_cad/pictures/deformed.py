@@ -14,7 +14,12 @@ from .limits import limits_of
 from .scene import EDGE, SIZE, add_lines, add_yarns, finish, new_scene, offscreen, save, surface
 from .skin import skin_of
 
-_MATT = {"smooth_shading": True, "ambient": 0.6, "diffuse": 0.44, "specular": 0.0}  # colours that are to be read
+_MATT = {
+    "smooth_shading": True,
+    "ambient": 0.6,
+    "diffuse": 0.44,
+    "specular": 0.0,
+}  # colours that are to be read
 _UNKNOWN = (0.78, 0.78, 0.78)
 _BELOW = 0.16  # of a picture's height: room for the bar
 _BAR = {
@@ -46,12 +51,12 @@ def draw_deformed(
     """Draw a deformed cell off-screen as PNG, as the paper's Fig. 22b and d.
 
     ``displacement`` (nodes, 3) mm, drawn as large as it is. ``field`` (nodes,) colours the cell,
-    grey where it is NaN, with a bar called ``label`` between ``limits``: by default round values that
-    hold 99 % of what is seen; the bar's title has the least and greatest value of the yarns drawn.
-    Colours run from blue over white to red where the limits are equally far from 0, else from
-    violet to yellow. Without a field yarns have the colours of their directions. Yarns named in
-    ``hide`` are left out; ``title`` stands above. Raises ValueError where an array does not fit the
-    mesh, a name is none of its yarns, or none is left.
+    grey where it is NaN, with a bar called ``label`` between ``limits``: by default round values
+    that hold 99 % of what is seen; the bar's title has the least and greatest value of the yarns
+    drawn. Colours run from blue over white to red where the limits are equally far from 0, else
+    from violet to yellow. Without a field yarns have the colours of their directions. Yarns named
+    in ``hide`` are left out; ``title`` stands above. Raises ValueError where an array does not fit
+    the mesh, a name is none of its yarns, or none is left.
     """
     moved = mesh.points + checked("displacement", displacement, mesh.points.shape)
     if field is not None:
@@ -69,6 +74,7 @@ def draw_deformed(
         add_lines(plotter, skin.lines, moved)
         finish(plotter, drawn, title, below=_BELOW)
         _add_field(plotter, surface(skin, moved), field, label, limits)
+
     save(plotter, path)
 
 
@@ -81,7 +87,9 @@ def _shown(mesh: Mesh, hide: Collection[str]) -> list[YarnBody]:
     return shown
 
 
-def _add_field(plotter, skin, field: np.ndarray, label: str, limits: tuple[float, float] | None) -> None:
+def _add_field(
+    plotter, skin, field: np.ndarray, label: str, limits: tuple[float, float] | None
+) -> None:
     """The skin coloured by a nodal field, and the bar of its colours.
 
     A face is grey where one of its corners has no value.
@@ -134,7 +142,9 @@ def _pixels(plotter, skin) -> np.ndarray:
     """
     numbers = np.arange(skin.n_cells)
     painted = skin.copy()
-    painted.cell_data["number"] = np.stack([numbers >> 16, numbers >> 8, numbers], axis=1).astype(np.uint8)
+    painted.cell_data["number"] = np.stack([numbers >> 16, numbers >> 8, numbers], axis=1).astype(
+        np.uint8
+    )
 
     finder = new_scene(off_screen=True)
     try:

@@ -20,6 +20,7 @@ def limits_of(values: np.ndarray) -> tuple[float, float, int]:
         low = min(low, 0.0)
     elif abs(high) < -_NEAR_ZERO * low:
         high = max(high, 0.0)
+
     if not high > low:
         return low - 0.5, high + 0.5, 4
     step = (high - low) / 4
@@ -27,4 +28,5 @@ def limits_of(values: np.ndarray) -> tuple[float, float, int]:
     step = power * next(nice for nice in _NICE if nice * power >= step * (1 - 1e-9))
     low = step * np.floor(low / step + 1e-9)
     steps = int(np.ceil((high - low) / step - 1e-9))
+
     return low, low + steps * step, steps

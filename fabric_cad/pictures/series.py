@@ -22,8 +22,9 @@ from .vtu import write_grid
 class State:
     """A deformed state: its ``time`` (or angle, or number), its ``label``, and what is known of it.
 
-    ``displacement`` (nodes, 3) mm; ``point_data`` and ``cell_data`` map names to arrays (nodes, ...)
-    and (elements, ...); ``facts`` maps names to one number or text each, which become field data.
+    ``displacement`` (nodes, 3) mm; ``point_data`` and ``cell_data`` map names to arrays (nodes,
+    ...) and (elements, ...); ``facts`` maps names to one number or text each, which become field
+    data.
     """
 
     time: float
@@ -48,13 +49,14 @@ def write_series(
     the cell at rest, and *Warp By Vector* with the factor n - 1 shows it n times larger. Cell data:
     ``yarn`` (from 1), ``direction`` (0 weft, 1 warp), ``fibre_axis`` along the deformed fibres.
     Field data: ``state`` (its label), ``yarn_names``, ``units`` (``name: unit`` of every array,
-    from ``units``), ``TimeValue`` and the state's facts. Raises ValueError where an array does not fit the
-    mesh or has a name that is taken, OSError where a file cannot be written whole.
+    from ``units``), ``TimeValue`` and the state's facts. Raises ValueError where an array does not
+    fit the mesh or has a name that is taken, OSError where a file cannot be written whole.
     """
     path = Path(path)
     states = list(states)
     digits = len(str(len(states) - 1))
     files, entries = [], []
+
     for number, state in enumerate(states):
         file = path.with_name(f"{path.stem}_state_{number:0{digits}d}.vtu")
         write_grid(_state_grid(mesh, state, units), file)
@@ -79,6 +81,7 @@ def _state_grid(mesh: Mesh, state: State, units: Mapping[str, str]):
             if name in there:
                 raise ValueError(f"{kind} data {name} is written anyway")
             there[name] = checked(f"{kind} data {name}", values, (count, *np.shape(values)[1:]))
+
     grid.point_data.active_vectors_name = "displacement"
 
     grid.field_data["state"] = [state.label]
@@ -86,4 +89,5 @@ def _state_grid(mesh: Mesh, state: State, units: Mapping[str, str]):
     grid.field_data["TimeValue"] = np.array([state.time])
     for name, fact in state.facts.items():
         grid.field_data[name] = [fact] if isinstance(fact, str) else np.array([float(fact)])
+
     return grid

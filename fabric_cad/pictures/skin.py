@@ -51,15 +51,24 @@ def skin_of(mesh: Mesh, yarns: Iterable[Body]) -> Skin:
 
     edges, first, second, same_way = _shared_edges(quads, len(mesh.points))
     rim = is_end[first] != is_end[second]
-    crease = _creases(mesh, edges, _angles(mesh, quads, first, second, same_way)) & ~is_end[first] & ~is_end[second]
+    crease = (
+        _creases(mesh, edges, _angles(mesh, quads, first, second, same_way))
+        & ~is_end[first]
+        & ~is_end[second]
+    )
 
     smooth = ~(rim | crease)
-    joined = coo_matrix((np.ones(smooth.sum()), (first[smooth], second[smooth])), shape=(len(quads), len(quads)))
+    joined = coo_matrix(
+        (np.ones(smooth.sum()), (first[smooth], second[smooth])), shape=(len(quads), len(quads))
+    )
     _, patch = connected_components(joined, directed=False)
+
     return Skin(quads, patch, edges[~smooth])
 
 
-def _shared_edges(quads: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _shared_edges(
+    quads: np.ndarray, nodes: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Edges (edges, 2) of two faces, smaller node first, and both faces.
 
     And whether both run through it the same way.
@@ -100,7 +109,10 @@ def _creases(mesh: Mesh, edges: np.ndarray, angles: np.ndarray) -> np.ndarray:
     line = line_of_node[lines[:, 0]]
 
     sharp = angles[lengthwise] > CREASE_DEGREES
-    share = np.bincount(line, sharp, minlength=nodes) / np.maximum(np.bincount(line, minlength=nodes), 1)
+    share = np.bincount(line, sharp, minlength=nodes) / np.maximum(
+        np.bincount(line, minlength=nodes), 1
+    )
     creases = np.zeros(len(edges), dtype=bool)
     creases[lengthwise] = share[line] > 0.5
+
     return creases

@@ -33,7 +33,9 @@ def free_parabola(
     return q, width / 2 * (root_left - root_right) / (root_left + root_right)
 
 
-def lateral_arc(thickness: Values, width: Values, half_chord: Values, rise: Values, slope: Values) -> Arc:
+def lateral_arc(
+    thickness: Values, width: Values, half_chord: Values, rise: Values, slope: Values
+) -> Arc:
     """Arc of a round lateral zone.
 
     Tangent to the contact profile at its end v = ``half_chord``, where that has risen by
@@ -44,7 +46,9 @@ def lateral_arc(thickness: Values, width: Values, half_chord: Values, rise: Valu
     return Arc(radius, rise - thickness / 2 + radius / root)
 
 
-def round_free_side(thickness: Values, width: Values, arc_left: Arc, arc_right: Arc) -> tuple[np.ndarray, ...]:
+def round_free_side(
+    thickness: Values, width: Values, arc_left: Arc, arc_right: Arc
+) -> tuple[np.ndarray, ...]:
     """Free parabola of a round section, tangent to both arcs: (q, v0, left, right), mm and 1/mm.
 
     With x = 1/sin(theta) at a point of tangency, tangency to one arc is the cubic
@@ -52,7 +56,9 @@ def round_free_side(thickness: Values, width: Values, arc_left: Arc, arc_right: 
     largest root in closed form leaves one unknown, q, found by bisection. Arrays broadcast;
     NaN where an arc does not fit below the rectangle's side.
     """
-    arcs = [Arc(*(np.asarray(value, dtype=float) for value in arc)) for arc in (arc_left, arc_right)]
+    arcs = [
+        Arc(*(np.asarray(value, dtype=float) for value in arc)) for arc in (arc_left, arc_right)
+    ]
     depths = [np.asarray(thickness) / 2 - arc.centre for arc in arcs]
     fits = np.all([depth > arc.radius for arc, depth in zip(arcs, depths)], axis=0)
 
@@ -66,6 +72,7 @@ def round_free_side(thickness: Values, width: Values, arc_left: Arc, arc_right: 
 
         q = np.exp((low + high) / 2)
         (_, left), (vertex, right) = (_tangency(q, width, *side) for side in zip(arcs, depths))
+
     return tuple(np.where(fits, value, np.nan) for value in (q, vertex, -left, right))
 
 

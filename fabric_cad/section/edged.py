@@ -28,7 +28,9 @@ class Edged(Form):
 
 
 @contact_strips.register
-def _(form: Edged, frame: Frame, contact: ContactSide, turns: tuple[bool, bool], free: FreeSide) -> list[Strip]:
+def _(
+    form: Edged, frame: Frame, contact: ContactSide, turns: tuple[bool, bool], free: FreeSide
+) -> list[Strip]:
     lower, upper = contact_profile(frame, contact, turns), free_parabola_of(frame, free)
     half = contact.half_chord
 
@@ -45,12 +47,21 @@ def _(form: Edged, frame: Frame, contact: ContactSide, turns: tuple[bool, bool],
 def _(form: Edged, frame: Frame, between: FreeSide) -> list[Strip]:
     sides = dict(zip(("bottom", "top"), symmetric_profiles(frame, between)))
     ends = {side: (-frame.split(side).half_chord, frame.split(side).half_chord) for side in sides}
-    middles = [parabolic_strip(side, frame.breaks(side), *ends[side], profile[:1]) for side, profile in sides.items()]
-    laterals = [strip for side, profile in sides.items() for strip in _laterals(frame, side, profile, ends[side])]
+    middles = [
+        parabolic_strip(side, frame.breaks(side), *ends[side], profile[:1])
+        for side, profile in sides.items()
+    ]
+    laterals = [
+        strip
+        for side, profile in sides.items()
+        for strip in _laterals(frame, side, profile, ends[side])
+    ]
     return [*middles, *laterals, *_uprights(frame, sides["bottom"], form.upright(frame))]
 
 
-def _laterals(frame: Frame, side: str, profile: Profile, ends: tuple[float, float]) -> Iterator[Strip]:
+def _laterals(
+    frame: Frame, side: str, profile: Profile, ends: tuple[float, float]
+) -> Iterator[Strip]:
     """Strips between the ends of a side's middle strip and the edges."""
     if not frame.has_laterals(side):
         return

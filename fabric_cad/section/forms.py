@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 class Form:
     """The form of a section: what its lateral zones are like, between contact and free side.
 
-    ``word`` is its name in tables; ``takes_lateral_height`` says whether a row must give the height of its
-    sides; ``parameters`` of a direction are those the paper counts for the form itself, 0 where contact
-    chords and offsets make the count (sections 5.1, 5.2).
+    ``word`` is its name in tables; ``takes_lateral_height`` says whether a row must give the height
+    of its sides; ``parameters`` of a direction are those the paper counts for the form itself, 0
+    where contact chords and offsets make the count (sections 5.1, 5.2).
     """
 
     word: ClassVar[str]
@@ -62,7 +62,10 @@ def unregister(form: Form) -> None:
 
 
 def rows_by_form(words: Sequence[str]) -> Iterator[tuple[Form, np.ndarray]]:
-    """Every form that rows have, and their numbers, shape (rows of the form,); ``words`` are one a row."""
+    """Every form that rows have, and their numbers, shape (rows of the form,).
+
+    ``words`` are one a row.
+    """
     named = np.array(words, dtype=object)
     for word, form in FORMS.items():
         rows = np.flatnonzero(named == word)

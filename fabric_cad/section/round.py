@@ -54,7 +54,9 @@ class _Arc:
             half = (0.0 - start) / 2
             middle, weight = start + half, np.cos(half)
             polar = [(self.radius, start), (self.radius / weight, middle), (self.radius, 0.0)]
-            poles = np.array([[sign * (self.v + r * np.cos(a)), self.z + r * np.sin(a), 1.0] for r, a in polar])
+            poles = np.array(
+                [[sign * (self.v + r * np.cos(a)), self.z + r * np.sin(a), 1.0] for r, a in polar]
+            )
             poles[1, 2] = weight
 
             knots = np.array([0.0] * 3 + [1.0] * 3)
@@ -62,7 +64,9 @@ class _Arc:
 
 
 @contact_strips.register
-def _(form: Round, frame: Frame, contact: ContactSide, turns: tuple[bool, bool], free: FreeSide) -> list[Strip]:
+def _(
+    form: Round, frame: Frame, contact: ContactSide, turns: tuple[bool, bool], free: FreeSide
+) -> list[Strip]:
     half, reach = contact.half_chord, contact.half_chord - contact.offset
     strips = [
         contact_strip(frame, contact, contact_profile(frame, contact, turns)),
@@ -75,6 +79,7 @@ def _(form: Round, frame: Frame, contact: ContactSide, turns: tuple[bool, bool],
 
         end = np.arccos(np.clip((abs(tangency) - centre) / radius, -1, 1))
         strips += _Arc(centre, height, radius, -np.pi / 2 + np.arctan(slope), end).strips(edge)
+
     return strips
 
 

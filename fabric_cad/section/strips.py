@@ -8,10 +8,10 @@ Seen against the direction of travel, with the names of the sides::
          '---------------o-------------------o---------------'
             left_lower          bottom            right_lower
 
-Strips run from left to right, upright ones upwards. Every section has a ``bottom`` and a ``top``; its
-form and its contact chords say which of the others there are: where ``left_lower`` is missing, ``bottom``
-runs on to the edge, and where ``left`` is missing, lower and upper side meet there in a point (an edge,
-or the outermost point of an arc).
+Strips run from left to right, upright ones upwards. Every section has a ``bottom`` and a ``top``;
+its form and its contact chords say which of the others there are: where ``left_lower`` is missing,
+``bottom`` runs on to the edge, and where ``left`` is missing, lower and upper side meet there in a
+point (an edge, or the outermost point of an arc).
 """
 
 from __future__ import annotations

@@ -32,7 +32,9 @@ class CaseTable:
 
     def columns(self) -> dict[str, list[float]]:
         """The table by columns; none of a table without lines."""
-        return {name: [row[name] for row in self.rows] for name in (self.rows[0] if self.rows else ())}
+        return {
+            name: [row[name] for row in self.rows] for name in (self.rows[0] if self.rows else ())
+        }
 
     def write(self, path: Path) -> None:
         """Write the rows as CSV; an empty cell where there is no number."""
@@ -40,7 +42,9 @@ class CaseTable:
             if self.rows:
                 writer = csv.writer(file, lineterminator="\n")
                 writer.writerow(self.rows[0])
-                writer.writerows([[_cell_text(value) for value in row.values()] for row in self.rows])
+                writer.writerows(
+                    [[_cell_text(value) for value in row.values()] for row in self.rows]
+                )
 
 
 def case_table(run: CaseRun, paths: Sequence[Sequence[Any]], jobs: Sequence[Job]) -> CaseTable:
@@ -63,12 +67,15 @@ def case_table(run: CaseRun, paths: Sequence[Sequence[Any]], jobs: Sequence[Job]
         for line in lines
         for number in [line.number]
     )
+
     return CaseTable(
         times=tuple(line.time for line in lines),
         rows=rows,
         labels=tuple(map(case.label, rows)),
         reached=tuple(reached[line.number] for line in lines),
-        valid=tuple(n for n, row in enumerate(rows) if row["penetration_mm"] <= run.penetration_bound),
+        valid=tuple(
+            n for n, row in enumerate(rows) if row["penetration_mm"] <= run.penetration_bound
+        ),
     )
 
 

@@ -25,14 +25,21 @@ class Cell:
     report: CellReport
 
 
-def loaded_cell(row: Family, settings: Settings, options: Mapping, folder: Path, stages: Stages) -> Cell:
+def loaded_cell(
+    row: Family, settings: Settings, options: Mapping, folder: Path, stages: Stages
+) -> Cell:
     """The cell of a table of one row, with its STEP and mesh file in ``folder``.
 
     ``options``, keywords of :func:`fabric_cad.mesh_options`, win over the settings' mesh. Raises
     :class:`InputError` where they do not fit, :class:`BuildError` where the cell is not consistent.
     """
-    asked = options if "size" in options else {k: v for k, v in asdict(settings.mesh).items() if v} | dict(options)
+    asked = (
+        options
+        if "size" in options
+        else {k: v for k, v in asdict(settings.mesh).items() if v} | dict(options)
+    )
     made = make_step(row, folder, stages)
     used = mesh_options(made.fabric, **asked)
     meshed = make_mesh(made, used, stages)
+
     return Cell(made.fabric, meshed.mesh, used, checked_report(made, meshed, stages))

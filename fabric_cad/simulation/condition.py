@@ -11,11 +11,13 @@ from .reached import Deformed
 def condition(deformed: Deformed, law: YarnLaw) -> dict[str, float]:
     """The columns :data:`~fabric_cad.simulation.loads.CONDITION` of a state.
 
-    ``contact_penetration_mm`` between the contact surfaces and ``penetration_mm`` between any two yarns, measured
-    on their deformed shapes; ``contact_share`` of the patches; strain energy; the least volume ratio in an element.
+    ``contact_penetration_mm`` between the contact surfaces and ``penetration_mm`` between any two
+    yarns, measured on their deformed shapes; ``contact_share`` of the patches; strain energy; the
+    least volume ratio in an element.
     """
     reached = deformed.reached
     energy = cell_energy(deformed.mesh, reached.displacement, law)
+
     return {
         "contact_penetration_mm": reached.overclosure,
         "penetration_mm": penetration(deformed.mesh, deformed.points, deformed.vectors).depth,

@@ -53,15 +53,25 @@ def gauss_points(mesh: Mesh, displacement: np.ndarray) -> Iterator[Point]:
 
 
 def cell_energy(mesh: Mesh, displacement: np.ndarray, law: YarnLaw) -> Energy:
-    """Energy of the yarns' law, S = C E of Green's strain plus its compaction; ``displacement`` (nodes, 3) mm."""
+    """Energy of the yarns' law, S = C E of Green's strain plus its compaction.
+
+    ``displacement`` (nodes, 3) mm.
+    """
     stiffness = np.linalg.inv(law.compliance)
     total, least = 0.0, np.inf
+
     for point in gauss_points(mesh, displacement):
         normal = np.einsum("eii->ei", point.strain)
         density = np.einsum("ei,ij,ej->e", normal, stiffness, normal, optimize=True) / 2
-        for (i, j), modulus in (((0, 1), law.G12_MPa), ((0, 2), law.G13_MPa), ((1, 2), law.G23_MPa)):
+        for (i, j), modulus in (
+            ((0, 1), law.G12_MPa),
+            ((0, 2), law.G13_MPa),
+            ((1, 2), law.G23_MPa),
+        ):
             density += 2 * modulus * point.strain[:, i, j] ** 2
+
         density += law.hardening / 4 * (point.ratio - 1) ** 4
         total += float((density * point.volume).sum())
         least = min(least, float(point.ratio.min()))
+
     return Energy(total, least)

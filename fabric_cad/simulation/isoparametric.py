@@ -41,8 +41,14 @@ def _slopes(at: np.ndarray) -> np.ndarray:
     if at.shape[1] == 2:
         return np.stack([by_x, by_y], axis=1)
     z = at[:, 2:]
+
     return np.stack(
-        [np.hstack([by_x, by_x * z]), np.hstack([by_y, by_y * z]), np.hstack([np.zeros_like(plane), plane])], axis=1
+        [
+            np.hstack([by_x, by_x * z]),
+            np.hstack([by_y, by_y * z]),
+            np.hstack([np.zeros_like(plane), plane]),
+        ],
+        axis=1,
     )
 
 
@@ -56,6 +62,7 @@ def inside_hexahedra(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     size = np.ptp(corners, axis=1).max(axis=1)
     at = np.zeros_like(points)
     moving = np.arange(len(points))
+
     for _ in range(_STEPS):
         here = at[moving]
         residual = np.einsum("nt,ntd->nd", _terms(here), form[moving]) - points[moving]
@@ -65,18 +72,25 @@ def inside_hexahedra(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
         moving = moving[np.abs(at[moving] - here).max(axis=1) > _CONVERGED]
         if not len(moving):
             break
+
     residual = np.einsum("nt,ntd->nd", _terms(at), form) - points
+
     return (np.abs(at).max(axis=1) <= 1 + _EDGE) & (np.abs(residual).max(axis=1) <= _MISS * size)
 
 
 def _solve(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solutions (systems, 3) of 3 x 3 systems by Cramer's rule; a singular system gives a step to nowhere."""
+    """Solutions (systems, 3) of 3 x 3 systems by Cramer's rule.
+
+    A singular system gives a step to nowhere.
+    """
     a, b, c = np.moveaxis(matrices, 2, 0)
     bc = np.cross(b, c)
     determinant = np.einsum("nd,nd->n", a, bc)
     determinant = np.where(determinant == 0, np.finfo(float).tiny, determinant)
     by = np.stack([bc, np.cross(c, a), np.cross(a, b)], axis=1)
-    return np.nan_to_num(np.einsum("nid,nd->ni", by, right) / determinant[:, None], posinf=1.0, neginf=-1.0)
+    return np.nan_to_num(
+        np.einsum("nid,nd->ni", by, right) / determinant[:, None], posinf=1.0, neginf=-1.0
+    )
 
 
 def distance_to_quads(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
@@ -102,6 +116,7 @@ def _distance_to_inside(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     form = _powers(corners, 2)
     at = np.zeros((len(points), 2))
     moving = np.arange(len(points))
+
     for _ in range(_STEPS):
         here, part = at[moving], form[moving]
         off = np.einsum("nt,ntd->nd", _terms(here), part) - points[moving]
@@ -109,11 +124,16 @@ def _distance_to_inside(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
         slope = np.einsum("nid,nd->ni", by, off)
         (xx, xy), (_, yy) = np.moveaxis(np.einsum("nid,njd->nij", by, by), 0, 2)
         twisted = xy + np.einsum("nd,nd->n", off, part[:, 3])
-        xy = np.where(xx * yy > twisted**2, twisted, xy)  # Newton's step where it leads down, else Gauss's
+        xy = np.where(
+            xx * yy > twisted**2, twisted, xy
+        )  # Newton's step where it leads down, else Gauss's
         determinant = np.maximum(xx * yy - xy**2, np.finfo(float).tiny)
-        step = np.stack([yy * slope[:, 0] - xy * slope[:, 1], xx * slope[:, 1] - xy * slope[:, 0]], axis=1)
+        step = np.stack(
+            [yy * slope[:, 0] - xy * slope[:, 1], xx * slope[:, 1] - xy * slope[:, 0]], axis=1
+        )
         at[moving] = np.clip(here - step / determinant[:, None], -1.0, 1.0)
         moving = moving[np.abs(at[moving] - here).max(axis=1) > _CONVERGED]
         if not len(moving):
             break
+
     return np.linalg.norm(np.einsum("nt,ntd->nd", _terms(at), form) - points, axis=1)

@@ -31,7 +31,8 @@ _STRESS_FREE = 1e-6  # MPa: contact pressure above which a node counts as touchi
 class Solver:
     """Which ccx to run, on how many threads, for how many seconds a job, and who hears of a case's progress.
 
-    By default the one on the PATH, on all processors. Raises :class:`SolverError` where there is none.
+    By default the one on the PATH, on all processors. Raises :class:`SolverError` where there is
+    none.
     """
 
     path: Path = field(default_factory=find_solver)
@@ -60,20 +61,38 @@ def write_model(
     """Write the deck of a cell that goes through loads. Raises :class:`BuildError` where its ends do not match."""
     law, contact = settings.yarn, settings.contact
     constants = EngineeringConstants(
-        *(law.E1_MPa, law.E2_MPa, law.E3_MPa, law.nu12, law.nu13, law.nu23, law.G12_MPa, law.G13_MPa, law.G23_MPa)
+        *(
+            law.E1_MPa,
+            law.E2_MPa,
+            law.E3_MPa,
+            law.nu12,
+            law.nu13,
+            law.nu23,
+            law.G12_MPa,
+            law.G13_MPa,
+            law.G23_MPa,
+        )
     )
     rings = 0 if contact.kind == "tie" else contact.rings
-    touch = Touch(contact.kind, contact.stiffness_N_per_mm3, contact.friction, contact.stick_N_per_mm3, rings)
-    write_keywords(model_keywords(mesh, lattice, constants, law.hardening, touch, loads, title), path, dialect)
+    touch = Touch(
+        contact.kind, contact.stiffness_N_per_mm3, contact.friction, contact.stick_N_per_mm3, rings
+    )
+    write_keywords(
+        model_keywords(mesh, lattice, constants, law.hardening, touch, loads, title), path, dialect
+    )
 
 
-def run_job(deck: Path, mesh: Mesh, solver: Solver, listen: Callable[[Progress], None] | None = None) -> Job:
+def run_job(
+    deck: Path, mesh: Mesh, solver: Solver, listen: Callable[[Progress], None] | None = None
+) -> Job:
     """Run a deck of :func:`write_model` and read what it reached; of a job that stops early, what came before.
 
     ``listen`` hears of its increments.
     Raises :class:`SolverError` where the solver cannot be started.
     """
-    run = run_solver(deck, solver.path, threads=solver.threads, time_limit=solver.time_limit, listen=listen)
+    run = run_solver(
+        deck, solver.path, threads=solver.threads, time_limit=solver.time_limit, listen=listen
+    )
     for useless in (deck.with_suffix(".12d"), deck.with_name("spooles.out")):
         useless.unlink(missing_ok=True)
     if not run.increments:
@@ -83,13 +102,17 @@ def run_job(deck: Path, mesh: Mesh, solver: Solver, listen: Callable[[Progress],
         step = round(each.time)  # every step takes a time of 1 and prints at its end
         if each.quantity == "RF":
             forces.setdefault(step, {})[each.name.lower()] = each.values
+
     weights = _patch_areas(mesh)
     reached = []
     for state in read_frd(deck.with_suffix(".frd")):
         if abs(state.time - state.step) > 1e-4:
             continue  # a step's load reached in part
-        pulls = np.array([forces[state.step].get(f"{name}_ends", np.full(3, np.nan)) for name in DIRECTIONS])
+        pulls = np.array(
+            [forces[state.step].get(f"{name}_ends", np.full(3, np.nan)) for name in DIRECTIONS]
+        )
         reached.append(_reached(mesh, state, pulls, weights))
+
     return Job(run, tuple(reached))
 
 

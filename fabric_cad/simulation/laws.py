@@ -33,7 +33,11 @@ class YarnLaw:
         {
             **{f"{modulus}_MPa": POSITIVE for modulus in ("E1", "E2", "E3", "G12", "G13", "G23")},
             **dict.fromkeys(("nu12", "nu13", "nu23"), POISSON),
-            "compaction_strain": (float, lambda value: value >= 0.001, "is below 0.001 (inf: a linear law)"),
+            "compaction_strain": (
+                float,
+                lambda value: value >= 0.001,
+                "is below 0.001 (inf: a linear law)",
+            ),
         }
     )
 
@@ -55,7 +59,11 @@ class YarnLaw:
 
         Crush by eps adds 3 H eps**2 to the modulus E3, as much again at the compaction strain.
         """
-        return 0.0 if math.isinf(self.compaction_strain) else self.E3_MPa / (3 * self.compaction_strain**2)
+        return (
+            0.0
+            if math.isinf(self.compaction_strain)
+            else self.E3_MPa / (3 * self.compaction_strain**2)
+        )
 
 
 @dataclass(frozen=True)
@@ -75,19 +83,30 @@ class ContactLaw:
 
     checks: ClassVar[Mapping[str, Check]] = MappingProxyType(
         {
-            "kind": (str, lambda kind: kind in ("penalty", "tie"), "is neither 'penalty' nor 'tie'"),
+            "kind": (
+                str,
+                lambda kind: kind in ("penalty", "tie"),
+                "is neither 'penalty' nor 'tie'",
+            ),
             "stiffness_N_per_mm3": POSITIVE,
             "friction": (float, is_from_to(0, 2), "is not between 0 and 2"),
             "stick_N_per_mm3": POSITIVE,
             "rings": whole(0, 20),
-            "valid_penetration": (float, lambda value: 0 < value <= 0.5, "is not above 0 and up to 0.5"),
+            "valid_penetration": (
+                float,
+                lambda value: 0 < value <= 0.5,
+                "is not above 0 and up to 0.5",
+            ),
         }
     )
 
 
 @dataclass(frozen=True)
 class CellMesh:
-    """Elements of the simulated cell, as the options of :func:`fabric_cad.mesh_options`; ``through`` 0: the least."""
+    """Elements of the simulated cell, as the options of :func:`fabric_cad.mesh_options`.
+
+    ``through`` 0: the least.
+    """
 
     across: int
     crossing: int

@@ -41,7 +41,9 @@ class Penetration:
 
     def deepest(self, kind: str) -> float:
         """Largest depth, mm, of the pairs of one of :data:`KINDS`."""
-        return max((depth for pair, depth in self.by_pair.items() if kind_of(pair) == kind), default=0.0)
+        return max(
+            (depth for pair, depth in self.by_pair.items() if kind_of(pair) == kind), default=0.0
+        )
 
 
 def kind_of(pair: tuple[Body, Body]) -> str:
@@ -68,6 +70,7 @@ def penetration(mesh: Mesh, points: np.ndarray, period: np.ndarray | None = None
     bodies = [_Body(mesh, points, period, yarn) for yarn in yarns]
     found = Penetration()
     by_pair: dict[tuple[Body, Body], float] = {}
+
     for (i, one), (j, other) in product(enumerate(bodies), repeat=2):
         if i == j and period is None:
             continue
@@ -76,6 +79,7 @@ def penetration(mesh: Mesh, points: np.ndarray, period: np.ndarray | None = None
         by_pair[pair] = max(depth, by_pair.get(pair, 0.0))
         if depth > found.depth:
             found = Penetration(depth, yarns[i], yarns[j], place)
+
     return Penetration(found.depth, found.first, found.second, found.place, by_pair)
 
 
@@ -104,14 +108,24 @@ class _Body:
     the neighbouring cells included.
     """
 
-    def __init__(self, mesh: Mesh, points: np.ndarray, period: np.ndarray | None, yarn: YarnBody) -> None:
+    def __init__(
+        self, mesh: Mesh, points: np.ndarray, period: np.ndarray | None, yarn: YarnBody
+    ) -> None:
         self.direction = yarn.direction.axis
         quads = mesh.quads_of(yarn, SurfaceKind.CONTACT, SurfaceKind.FREE)
-        edges = np.unique(np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)), axis=0)
+        edges = np.unique(
+            np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)), axis=0
+        )
         faces = points[quads]
-        self.probes = np.vstack([points[np.unique(quads)], points[edges].mean(axis=1), faces.mean(axis=1)])
+        self.probes = np.vstack(
+            [points[np.unique(quads)], points[edges].mean(axis=1), faces.mean(axis=1)]
+        )
         self.elements = _Boxed(points[mesh.hexahedra[mesh.elements_of(yarn)]])
-        along = np.zeros((1, 3)) if period is None else period[self.direction] * np.array([[-1], [0], [1]])
+        along = (
+            np.zeros((1, 3))
+            if period is None
+            else period[self.direction] * np.array([[-1], [0], [1]])
+        )
         self.skin = _Boxed((faces + along[:, None, None]).reshape(-1, 4, 3))
 
     @cached_property
@@ -157,7 +171,9 @@ def _deepest(one: _Body, other: _Body, shifts: np.ndarray) -> tuple[float, np.nd
 def _inside(places: np.ndarray, body: _Body) -> np.ndarray:
     """Indices of the places (places, 3) that lie in an element of a yarn."""
     elements = body.elements
-    near = cKDTree(places / elements.half).sparse_distance_matrix(body.by_element, 1.0, p=np.inf, output_type="ndarray")
+    near = cKDTree(places / elements.half).sparse_distance_matrix(
+        body.by_element, 1.0, p=np.inf, output_type="ndarray"
+    )
     place, element = near["i"], near["j"]
     off = np.maximum(elements.low[element] - places[place], places[place] - elements.high[element])
     boxed = (off <= 1e-9 * elements.half).all(axis=1)
@@ -170,12 +186,17 @@ def _depths(places: np.ndarray, body: _Body) -> np.ndarray:
     skin = body.skin
     nearest = np.array(body.by_corner.query(places)[0])
     reach = nearest + np.linalg.norm(skin.half)
-    near_faces = [np.array(faces, dtype=int) for faces in body.by_face.query_ball_point(places, reach)]
+    near_faces = [
+        np.array(faces, dtype=int) for faces in body.by_face.query_ball_point(places, reach)
+    ]
     place = np.repeat(np.arange(len(places)), [len(faces) for faces in near_faces])
     face = np.concatenate(near_faces)
 
-    off = np.maximum(np.maximum(skin.low[face] - places[place], places[place] - skin.high[face]), 0.0)
+    off = np.maximum(
+        np.maximum(skin.low[face] - places[place], places[place] - skin.high[face]), 0.0
+    )
     near = np.linalg.norm(off, axis=1) <= nearest[place]
     place, face = place[near], face[near]
     np.minimum.at(nearest, place, distance_to_quads(places[place], skin.corners[face]))
+
     return nearest

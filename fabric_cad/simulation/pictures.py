@@ -36,7 +36,9 @@ def write_states(run: CaseRun, table: CaseTable) -> None:
                 yarn_stress(mesh, reached.displacement, law).columns(),
                 {"row": run.cell.fabric.name, "case": run.case.name, **row},
             )
-            for time, label, reached, row in zip(table.times, table.labels, table.reached, table.rows)
+            for time, label, reached, row in zip(
+                table.times, table.labels, table.reached, table.rows
+            )
         )
         write_series(mesh, states, run.path(".pvd"), _UNITS)
 
@@ -53,6 +55,7 @@ def draw_state(run: CaseRun, state: Reached, label: str) -> None:
         ("_strain", through, "strain through the yarn (negative: crushed)", ()),
         ("_pressure", state.pressure, "contact pressure on the wefts, MPa", warps),
     ]
+
     with run.stages("pictures"):
         for ending, values, bar, hidden in pictures:
             if not np.isnan(values).all():
@@ -68,7 +71,11 @@ def draw_crushing(run: CaseRun, state: Reached, label: str) -> None:
     mesh = run.cell.mesh
     with run.stages("cuts"):
         cuts = {name: cut_along(mesh, state.displacement, name) for name in ("weft_1", "warp_1")}
-        shifts = [np.abs(cut.deformed - cut.rest)[:, 1].max() for outlines in cuts.values() for cut in outlines]
+        shifts = [
+            np.abs(cut.deformed - cut.rest)[:, 1].max()
+            for outlines in cuts.values()
+            for cut in outlines
+        ]
         thickness = min(way.thickness for way in run.cell.fabric.directions.values())
         figure = plot_crushing(cuts, _magnified(max(shifts), _CRUSH * thickness))
         save_figure(figure, run.path("_crushing.png"), f"{run.cell.fabric.name}: {label}")

@@ -19,9 +19,10 @@ SECONDS_SPREAD = 3.0
 class CaseProgress:
     """Where a case is: ``state`` of ``states`` (0: not begun) in its ``increment``, ``load`` the share of it reached.
 
-    ``seconds`` since the solver was first started; ``expected`` those of the whole case by the measured
-    rate, within a factor of :data:`SECONDS_SPREAD`; ``left`` those that the rest takes at this run's own rate since
-    its first state, which takes longer than others, None before there is one.
+    ``seconds`` since the solver was first started; ``expected`` those of the whole case by the
+    measured rate, within a factor of :data:`SECONDS_SPREAD`; ``left`` those that the rest takes at
+    this run's own rate since its first state, which takes longer than others, None before there is
+    one.
     """
 
     state: int
@@ -48,9 +49,16 @@ class CaseWatch:
         listen: Callable[[CaseProgress], None] | None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.states, self.hexahedra, self.listen, self.clock = tuple(states), hexahedra, listen, clock
+        self.states, self.hexahedra, self.listen, self.clock = (
+            tuple(states),
+            hexahedra,
+            listen,
+            clock,
+        )
         self.start = clock()
-        self.first: tuple[float, float] | None = None  # seconds and states when the first state was reached
+        self.first: tuple[float, float] | None = (
+            None  # seconds and states when the first state was reached
+        )
         self.tell(0, 0, 0.0)
 
     def job(self, number: int) -> Callable[[Progress], None] | None:
@@ -73,8 +81,11 @@ class CaseWatch:
         if self.first is not None and reached - self.first[1] >= 0.5:
             pace = (seconds - self.first[0]) / (reached - self.first[1])
             left = pace * (states - reached)
+
         expected = expected_seconds(states, self.hexahedra)
-        self.listen(CaseProgress(state, states, increment, load, self.hexahedra, seconds, expected, left))
+        self.listen(
+            CaseProgress(state, states, increment, load, self.hexahedra, seconds, expected, left)
+        )
 
 
 def expected_seconds(states: int, hexahedra: int) -> float:
@@ -95,7 +106,9 @@ def clock_words(seconds: float) -> str:
 
 def announced(progress: CaseProgress) -> str:
     """What is said before the first state."""
-    low, high = (clock_words(progress.expected * factor) for factor in (1 / SECONDS_SPREAD, SECONDS_SPREAD))
+    low, high = (
+        clock_words(progress.expected * factor) for factor in (1 / SECONDS_SPREAD, SECONDS_SPREAD)
+    )
     return (
         f"{progress.states} states on {progress.hexahedra} hexahedra: about {clock_words(progress.expected)} "
         f"(likely {low} to {high}; {SECONDS_A_STATE:g} s a state per 1000 hexahedra, by few measurements)"

@@ -33,7 +33,9 @@ class Reached:
 def at_rest(mesh: Mesh) -> Reached:
     """The cell before any load: nothing moved, nothing pressed."""
     zero = np.zeros(len(mesh.points))
-    return Reached(np.zeros((2, 3)), np.zeros((len(zero), 3)), np.zeros((len(zero), 6)), zero, 0.0, np.nan)
+    return Reached(
+        np.zeros((2, 3)), np.zeros((len(zero), 3)), np.zeros((len(zero), 6)), zero, 0.0, np.nan
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +64,10 @@ def thickness(points: np.ndarray) -> float:
 def tension_per_yarn(mesh: Mesh, pulls: np.ndarray) -> dict[str, float]:
     """Columns ``T11_N_per_yarn`` and ``T22_N_per_yarn`` of what all wefts and all warps pull with, (2,) N."""
     counts = [sum(yarn.direction is direction for yarn in mesh.yarns) for direction in DIRECTIONS]
-    return {f"{name}_N_per_yarn": pull / count for name, pull, count in zip(("T11", "T22"), pulls, counts)}
+    return {
+        f"{name}_N_per_yarn": pull / count
+        for name, pull, count in zip(("T11", "T22"), pulls, counts)
+    }
 
 
 def widths(mesh: Mesh, points: np.ndarray) -> tuple[float, float]:

@@ -51,9 +51,9 @@ class ContactReport:
 class CaseReport:
     """The report of a load case on one row.
 
-    ``case`` is its name; ``settings`` are the tables it took; ``consistency``, ``mesh`` and ``warnings`` those of the
-    cell; ``findings`` what this case alone has; ``seconds`` by stage; ``origin`` what made it; ``files``
-    the digests of all others, by name.
+    ``case`` is its name; ``settings`` are the tables it took; ``consistency``, ``mesh`` and
+    ``warnings`` those of the cell; ``findings`` what this case alone has; ``seconds`` by stage;
+    ``origin`` what made it; ``files`` the digests of all others, by name.
     """
 
     row: str
@@ -147,7 +147,9 @@ def _extreme(choose: Callable[[list[float]], float], values: Iterable[float]) ->
 
 def plain(row: Mapping[str, float]) -> dict[str, float | str | None]:
     """A line of a table for JSON, which knows neither infinity nor NaN."""
-    return {name: None if math.isnan(value) else _finite(float(value)) for name, value in row.items()}
+    return {
+        name: None if math.isnan(value) else _finite(float(value)) for name, value in row.items()
+    }
 
 
 def _finite(value: Any) -> Any:

@@ -38,16 +38,21 @@ def make_tension(
     ``families`` is the folder whose ``simulation.toml`` holds, where it has one. ``options``:
     ``mesh``, keywords of :func:`fabric_cad.mesh_options` that win over the settings', and
     ``stages``. Raises :class:`FabricCadError`; where the solver stopped early, what it reached is
-    in ``out/<row name>/tension_incomplete`` until a later run finishes, and earlier results are as they were.
+    in ``out/<row name>/tension_incomplete`` until a later run finishes, and earlier results are as
+    they were.
     """
-    return make_case("tension", row, read_settings(families, row.names[0]), out, solver=solver, **options).content()
+    return make_case(
+        "tension", row, read_settings(families, row.names[0]), out, solver=solver, **options
+    ).content()
 
 
 def make_shear(
     row: Family, families: str | Path, out: str | Path, solver: Solver | None = None, **options: Any
 ) -> dict[str, Any]:
     """Trellis shear of one row's cell; as :func:`make_tension`."""
-    return make_case("shear", row, read_settings(families, row.names[0]), out, solver=solver, **options).content()
+    return make_case(
+        "shear", row, read_settings(families, row.names[0]), out, solver=solver, **options
+    ).content()
 
 
 def write_case(
@@ -60,7 +65,10 @@ def write_case(
     mesh: Mapping[str, Any] | None = None,
     stages: Stages | None = None,
 ) -> list[Path]:
-    """Write the decks of a load case and run nothing; their places in ``out/<row name>``. Options as above."""
+    """Write the decks of a load case and run nothing.
+
+    Their places in ``out/<row name>``. Options as above.
+    """
     target = Path(out) / row.names[0]
     with staged(target, renew_digests) as folder:
         run = _prepared(name, row, settings, folder, mesh=mesh or {}, stages=stages or Stages())
@@ -77,7 +85,10 @@ def make_case(
     mesh: Mapping[str, Any] | None = None,
     stages: Stages | None = None,
 ) -> CaseReport:
-    """Run the load case of that name on one row's cell; as :func:`make_tension`, for any case there is."""
+    """Run the load case of that name on one row's cell.
+
+    As :func:`make_tension`, for any case there is.
+    """
     target, incomplete = Path(out) / row.names[0], f"{name}_{INCOMPLETE}"
     finished: list[CaseReport] = []
 
@@ -100,7 +111,10 @@ def make_case(
 
     if not finished:
         place = target / incomplete
-        raise SolverError(f"{row.names[0]}: the solver {report.solver.reason}; what it reached is in {place}")
+        raise SolverError(
+            f"{row.names[0]}: the solver {report.solver.reason}; what it reached is in {place}"
+        )
+
     return report
 
 
@@ -148,7 +162,13 @@ def run_case(
 
 
 def _prepared(
-    name: str, row: Family, settings: Settings, folder: Path, *, mesh: Mapping[str, Any], stages: Stages
+    name: str,
+    row: Family,
+    settings: Settings,
+    folder: Path,
+    *,
+    mesh: Mapping[str, Any],
+    stages: Stages,
 ) -> CaseRun:
     """The row's cell, meshed; its own files are dropped."""
     with tempfile.TemporaryDirectory(prefix="scratch-", dir=folder) as scratch:

@@ -1,7 +1,7 @@
 """Materials and load cases: ``simulation.toml`` beside the family tables.
 
-A key that is missing has the value of the file that is shipped, or else the one a load case gives it;
-``[rows.NAME.TABLE]`` holds what differs for one row.
+A key that is missing has the value of the file that is shipped, or else the one a load case gives
+it; ``[rows.NAME.TABLE]`` holds what differs for one row.
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ _LAWS: dict[str, Any] = {"yarn": YarnLaw, "contact": ContactLaw, "mesh": CellMes
 
 @dataclass(frozen=True, repr=False)
 class Settings:
-    """All that a simulation of one row takes beside the row; ``cases`` are all load cases there are."""
+    """All that a simulation of one row takes beside the row.
+
+    ``cases`` are all load cases there are.
+    """
 
     yarn: YarnLaw
     contact: ContactLaw
@@ -38,7 +41,9 @@ class Settings:
 
     def __repr__(self) -> str:
         """One name and value a table: studies know their units by it."""
-        tables = {name: getattr(self, name) for name in _LAWS} | {case.name: case for case in self.cases}
+        tables = {name: getattr(self, name) for name in _LAWS} | {
+            case.name: case for case in self.cases
+        }
         return f"Settings({', '.join(f'{name}={table!r}' for name, table in tables.items())})"
 
 
@@ -63,7 +68,9 @@ def read_settings(families: str | Path, row: str) -> Settings:
             merged[table] |= keys
 
     last = layers[-1]
-    read = {table: _section(section, table, merged[table], last) for table, section in sections.items()}
+    read = {
+        table: _section(section, table, merged[table], last) for table, section in sections.items()
+    }
     settings = Settings(
         **{table: read[table] for table in _LAWS},
         cases=tuple(read[name] for name in cases),
@@ -71,6 +78,7 @@ def read_settings(families: str | Path, row: str) -> Settings:
     if np.linalg.eigvalsh(settings.yarn.compliance).min() <= 0:
         message = "the yarn's moduli and Poisson ratios give no stable material"
         raise InputError(last.problem("yarn", "nu12", message, row))
+
     return settings
 
 
@@ -78,5 +86,7 @@ def _section(section: Any, table: str, values: Mapping[str, Any], file: Settings
     """A table as its value. Raises :class:`InputError` where a key is neither given nor has a value of its own."""
     needed = [field.name for field in fields(section) if field.default is MISSING]
     if missing := [key for key in needed if key not in values]:
-        raise InputError([file.problem(table, key, f"this key of [{table}] is missing") for key in missing])
+        raise InputError(
+            [file.problem(table, key, f"this key of [{table}] is missing") for key in missing]
+        )
     return section(**values)

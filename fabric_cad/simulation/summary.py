@@ -20,7 +20,9 @@ def _heading(report: CaseReport) -> str:
     return (
         f"{report.row}: {report.case}, {report.mesh['hexahedra']} hexahedra, {solver.states} states in "
         f"{solver.jobs} job{'s' * (solver.jobs != 1)} of CalculiX {solver.version}, "
-        f"{solver.seconds:.1f} s" + f", {solver.peak_memory_MB:.0f} MB" * (solver.peak_memory_MB > 0)
+        f"{solver.seconds:.1f} s"
+        + f", {solver.peak_memory_MB:.0f} MB"
+        * (solver.peak_memory_MB > 0)
     )
 
 
@@ -31,12 +33,15 @@ def _contact(report: CaseReport) -> list[str]:
             f"  penetration     at most {contact.max_contact_penetration_mm:.2e} mm between the contact surfaces, "
             f"{contact.max_penetration_mm:.2e} mm anywhere"
         )
+
     if contact.min_contact_share is not None:
         share = 100 * contact.min_contact_share
         lines.append(f"  contact         at least {share:.0f} % of the patches under pressure")
+
     if contact.states_beyond:
         lines.append(
             f"  NOT VALID       {contact.states_beyond} states: their yarns penetrate by more than "
             f"{contact.valid_penetration_mm:.2g} mm"
         )
+
     return lines

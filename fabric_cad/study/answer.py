@@ -32,7 +32,9 @@ def answer_lines(design: str, rows: Sequence[Row]) -> list[str]:
 
     full = [line for line in table if len(line) > 1]
     widths = [max(map(len, column)) for column in zip(*full)]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in table]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in table
+    ]
 
 
 def _weight(row: Mapping) -> float:
@@ -52,13 +54,22 @@ def _cells(design: str, row: Mapping) -> tuple[str, str, str]:
     if design == "sobol":
         return factor, _interval(row, "total"), _interval(row, "first_order")
     if design != "one-at-a-time":
-        return factor, f"{row['spearman']:+.2f}", f"{row['p_value']:.1g}" if row["p_value"] else "below 1e-300"
+        return (
+            factor,
+            f"{row['spearman']:+.2f}",
+            f"{row['p_value']:.1g}" if row["p_value"] else "below 1e-300",
+        )
+
     if _known(row.get("figure_value")):  # a factor of texts has a row a value
         return f"{factor} = {row['value']}", "", f"figure {row['figure_value']:.5g}"
 
     elasticity = f"{row['elasticity']:+.2f}" if _known(row.get("elasticity")) else ""
     ends = f"{row['figure_at_low']:.5g} to {row['figure_at_high']:.5g}"
-    return factor, elasticity, f"{row['change']:+.3g} ({ends}) over {row['low']:.4g} to {row['high']:.4g}"
+    return (
+        factor,
+        elasticity,
+        f"{row['change']:+.3g} ({ends}) over {row['low']:.4g} to {row['high']:.4g}",
+    )
 
 
 def _interval(row: Mapping, name: str) -> str:
@@ -66,7 +77,10 @@ def _interval(row: Mapping, name: str) -> str:
 
 
 def reasons_lines(reasons: Iterable[tuple[str, str]]) -> list[str]:
-    """Lines that count the (status, reason) of refused and failed units; reasons that differ in numbers are one."""
+    """Lines that count the (status, reason) of refused and failed units.
+
+    Reasons that differ in numbers are one.
+    """
     kinds: dict[tuple[str, str], list[str]] = {}
     for status, reason in reasons:
         kinds.setdefault((status, re.sub(r"\d[\d.]*(e[+-]?\d+)?", "#", reason)), []).append(reason)
@@ -76,7 +90,9 @@ def reasons_lines(reasons: Iterable[tuple[str, str]]) -> list[str]:
     for (status, _), same in counted[:_MOST]:
         such_as = ", such as" if len(set(same)) > 1 else ""
         lines.append(f"  {len(same)} {status}{such_as}: {same[0]}")
+
     if len(counted) > _MOST:
         left = sum(len(same) for _, same in counted[_MOST:])
         lines.append(f"  {left} for {len(counted) - _MOST} other reasons, see table.csv")
+
     return lines

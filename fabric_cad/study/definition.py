@@ -89,6 +89,7 @@ def read_study(path: str | Path, families: str | Path = "families") -> Study:
             settings = read_settings(families, base.names[0])
         elif depth == STIFFNESS:
             constituents = read_constituents(families, base.names[0])
+
         if "depth" in found or "depth" not in content:
             _check_figures(file, figures, depth, settings)
 
@@ -122,6 +123,7 @@ def _known_values(file: StudyFile) -> dict:
     for key, known in (("design", DESIGNS), ("depth", depths())):
         if key in found and not file.one_of(found[key], known, key):
             del found[key]
+
     return found
 
 
@@ -133,7 +135,9 @@ def _figures(file: StudyFile, found: Mapping) -> list[str]:
     return []
 
 
-def _check_figures(file: StudyFile, figures: list[str], depth: str, settings: Settings | None) -> None:
+def _check_figures(
+    file: StudyFile, figures: list[str], depth: str, settings: Settings | None
+) -> None:
     for name in figures:
         if fault := figure_fault(name, depth, settings):
             file.wrong(fault, "figures")
@@ -147,6 +151,7 @@ def _check_samples(file: StudyFile, found: Mapping) -> None:
             file.wrong(f"{found[key]} is not at least {least}", key)
         elif key in found and design is not None and design not in RANDOM:
             file.wrong(f"has no meaning in a {design} design", key)
+
     if design in RANDOM and "samples" not in file.content:
         message = f"this key is missing; a {design} design needs the number of samples"
         file.wrong(message, "samples")
@@ -190,7 +195,9 @@ def _check_mesh(file: StudyFile, base: Family, mesh: Mapping) -> None:
             file.wrong(problem.message, f"mesh.{problem.column}")
 
 
-def _check_size(file: StudyFile, factors: Mapping[str, Factor], design: str | None, samples: int) -> None:
+def _check_size(
+    file: StudyFile, factors: Mapping[str, Factor], design: str | None, samples: int
+) -> None:
     if design == "grid":
         units = math.prod(len(levels(factor)) for factor in factors.values())
     else:

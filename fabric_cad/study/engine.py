@@ -1,7 +1,7 @@
 """Tasks to workers, results as they come; the door to dask.distributed.
 
-Workers are processes of this machine (:mod:`fabric_cad.study.processes`, without Dask) or those of a
-Dask cluster that someone else has started.
+Workers are processes of this machine (:mod:`fabric_cad.study.processes`, without Dask) or those of
+a Dask cluster that someone else has started.
 """
 
 from __future__ import annotations
@@ -43,15 +43,18 @@ def run_tasks(
     """(name, result) of ``work(*arguments)`` for every task (name, arguments), in the order in which they end.
 
     A result is an exception where the task ended so twice; ChildProcessError says that its workers
-    died. None is yielded every now and then while nothing ends. Runs on the cluster at ``scheduler``,
-    or on ``workers`` (default: one a core) processes of this machine. A worker is sent one task at a
-    time, so that one that dies takes no other task with it, whatever the cluster does about its
-    failures. Raises :class:`FabricCadError` where the scheduler cannot be reached or is lost.
+    died. None is yielded every now and then while nothing ends. Runs on the cluster at
+    ``scheduler``, or on ``workers`` (default: one a core) processes of this machine. A worker is
+    sent one task at a time, so that one that dies takes no other task with it, whatever the cluster
+    does about its failures. Raises :class:`FabricCadError` where the scheduler cannot be reached or
+    is lost.
     """
     waiting = iter(tasks)
     again: list[tuple[str, tuple]] = []
     tries: dict[str, int] = {}
-    crew: Workers = LocalWorkers(workers or cores()) if scheduler is None else ClusterWorkers(scheduler)
+    crew: Workers = (
+        LocalWorkers(workers or cores()) if scheduler is None else ClusterWorkers(scheduler)
+    )
 
     with crew:
         running: dict[Hashable, tuple[str, tuple]] = {}
@@ -118,7 +121,9 @@ class ClusterWorkers:
     def start(self, worker: str, work: Callable, arguments: tuple) -> None:
         """Send a task to a free worker."""
         key = f"fabric-cad-{os.urandom(8).hex()}"
-        self.futures[worker] = self.client.submit(work, *arguments, key=key, pure=False, workers=[worker])
+        self.futures[worker] = self.client.submit(
+            work, *arguments, key=key, pure=False, workers=[worker]
+        )
 
     def ended(self, seconds: float) -> list[tuple[str, object]]:
         """(worker, result) of tasks that ended or whose worker went, waited for at most so long.
@@ -127,7 +132,11 @@ class ClusterWorkers:
         """
         self._wait(seconds)
         there = self.client.nthreads()
-        over = [worker for worker, future in self.futures.items() if future.done() or worker not in there]
+        over = [
+            worker
+            for worker, future in self.futures.items()
+            if future.done() or worker not in there
+        ]
         return [(worker, _result(self.futures.pop(worker))) for worker in over]
 
     def _wait(self, seconds: float) -> None:

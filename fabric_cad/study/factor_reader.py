@@ -18,7 +18,9 @@ from .study_file import KINDS, StudyFile, is_kind
 _DISTRIBUTION_KEYS = {"uniform": ("from", "to", "steps"), "normal": ("mean", "std")}
 
 
-def read_factors(file: StudyFile, base: Family, content: Mapping, design: str | None) -> dict[str, Factor]:
+def read_factors(
+    file: StudyFile, base: Family, content: Mapping, design: str | None
+) -> dict[str, Factor]:
     """The factors of a study by column; what is wrong with them becomes problems of the file."""
     if not content and isinstance(file.content.get("factors"), dict):
         file.wrong("is empty; a study needs at least one factor", "factors")
@@ -39,6 +41,7 @@ def read_factors(file: StudyFile, base: Family, content: Mapping, design: str | 
         factor = reader.read(value)
         if factor is not None:
             factors[column] = factor
+
     return factors
 
 
@@ -74,7 +77,9 @@ class _FactorReader:
             return False
 
         name = self.base.names[0]
-        self.wrong(f"the base row {name} is balanced (every warp cell is empty); its weft cells vary both")
+        self.wrong(
+            f"the base row {name} is balanced (every warp cell is empty); its weft cells vary both"
+        )
         return True
 
     def read(self, value: object) -> Factor | None:
@@ -104,6 +109,7 @@ class _FactorReader:
                 cells = weave_cells(self.base) | {self.column: choice}
                 if fault := weave_fault(self.base.family, cells):
                     self.wrong(fault[1])
+
         return Values(tuple(value))
 
     def _number(self, value: object) -> Factor | None:
@@ -154,7 +160,10 @@ class _FactorReader:
                 self.wrong(f"{name}: {quoted(value)} is not {KINDS[kind]}")
 
     def _check_bound(self, value: object) -> None:
-        """What the column's bounds say of one value; the rest of its row is the unit's own business."""
+        """What the column's bounds say of one value.
+
+        The rest of its row is the unit's own business.
+        """
         if not is_kind(value, float):
             self.wrong(f"{quoted(value)} is not a number")
         elif isinstance(value, (int, float)) and (fault := bound_fault(self.column, value)):
@@ -187,12 +196,14 @@ class _FactorReader:
                 self.wrong(f"{end}: this key is missing")
             else:
                 self._check_bound(given[end])
+
         if not {"from", "to"} <= set(given):
             return None
 
         if not given["from"] < given["to"]:
             self.wrong(f"from {given['from']:g} is not below to {given['to']:g}")
             return None
+
         return Uniform(float(given["from"]), float(given["to"]), steps)
 
     def _normal(self, given: Mapping) -> Normal | None:

@@ -17,7 +17,10 @@ class Values:
 
 @dataclass(frozen=True)
 class Uniform:
-    """Uniform between two numbers; ``steps`` evenly spaced ones of them where a design takes levels."""
+    """Uniform between two numbers.
+
+    ``steps`` evenly spaced ones of them where a design takes levels.
+    """
 
     low: float
     high: float
@@ -46,7 +49,9 @@ def quantiles(factor: Factor, shares: np.ndarray) -> np.ndarray:
 
 @quantiles.register
 def _(factor: Values, shares: np.ndarray) -> np.ndarray:
-    return np.array(factor.values)[np.minimum((shares * len(factor.values)).astype(int), len(factor.values) - 1)]
+    return np.array(factor.values)[
+        np.minimum((shares * len(factor.values)).astype(int), len(factor.values) - 1)
+    ]
 
 
 @quantiles.register
@@ -58,7 +63,9 @@ def _(factor: Uniform, shares: np.ndarray) -> np.ndarray:
 def _(factor: Normal, shares: np.ndarray) -> np.ndarray:
     from scipy.special import ndtri
 
-    inside = np.clip(shares, np.finfo(float).tiny, 1 - np.finfo(float).epsneg)  # a Sobol sequence may hold 0
+    inside = np.clip(
+        shares, np.finfo(float).tiny, 1 - np.finfo(float).epsneg
+    )  # a Sobol sequence may hold 0
     return factor.mean + factor.std * ndtri(inside)
 
 

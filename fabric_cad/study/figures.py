@@ -45,13 +45,16 @@ def flat(report: Mapping) -> dict[str, object]:
             row |= {key: "; ".join(value)} if value else {}
         elif key == "measured_vs_model":
             for each in value:
-                row |= {f"{key}.{each['quantity']}.{k}": v for k, v in each.items() if k != "quantity"}
+                row |= {
+                    f"{key}.{each['quantity']}.{k}": v for k, v in each.items() if k != "quantity"
+                }
         elif key == "identified":
             row |= _identified(value)
         elif isinstance(value, Mapping):
             row |= {f"{key}.{name}": _text(each) for name, each in value.items()}
         else:
             row[key] = value
+
     return row
 
 
@@ -59,7 +62,11 @@ def _identified(found: Mapping) -> dict[str, object]:
     row: dict[str, object] = {}
     for name, value in found.items():
         if name in DIRECTIONS:
-            row |= {f"identified.{name}.{k}": v for k, v in value.items() if k not in ("control_points", "std")}
+            row |= {
+                f"identified.{name}.{k}": v
+                for k, v in value.items()
+                if k not in ("control_points", "std")
+            }
             for _, *place in point_columns(name):
                 point = place[0].split("_")[0]
                 for column, each in zip(place, value["control_points"][point]):
@@ -68,6 +75,7 @@ def _identified(found: Mapping) -> dict[str, object]:
             row |= {f"identified.{name}.{k}": v for k, v in value.items()}
         else:
             row[f"identified.{name}"] = _text(value)
+
     return row
 
 

@@ -24,6 +24,7 @@ def read_line(line: bytes) -> tuple[str, Outcome]:
         content = json.loads(line)
     except RecursionError as error:
         raise ValueError("nested too deeply") from error
+
     if not (isinstance(content, dict) and set(content) == {"sha256", "unit"}):
         raise ValueError("not a unit's line")
 
@@ -32,8 +33,12 @@ def read_line(line: bytes) -> tuple[str, Outcome]:
         raise ValueError("not as it was written")
     if not isinstance(record, dict) or set(record) != set(_KINDS):
         raise ValueError("not a unit's outcome")
-    if not all(isinstance(record[name], kind) for name, kind in _KINDS.items()) or record["status"] not in _STATUS:
+    if (
+        not all(isinstance(record[name], kind) for name, kind in _KINDS.items())
+        or record["status"] not in _STATUS
+    ):
         raise ValueError("not a unit's outcome")
+
     return record["key"], Outcome(**{field.name: record[field.name] for field in fields(Outcome)})
 
 

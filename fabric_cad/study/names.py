@@ -15,7 +15,16 @@ from ..weave.directions import DIRECTIONS
 from .figures import STIFFNESS
 
 _WEAVE = ("over", "under", "step", "wefts", "warps")
-_DIRECTION = ("slope", "p_low", "p_high", "amplitude_mm", "thickness_mm", "width_mm", "spacing_mm", "crimp")
+_DIRECTION = (
+    "slope",
+    "p_low",
+    "p_high",
+    "amplitude_mm",
+    "thickness_mm",
+    "width_mm",
+    "spacing_mm",
+    "crimp",
+)
 _COMPARED = ("measured", "model", "difference_percent")
 _VOLUMES = (
     "yarn_mm3",
@@ -25,7 +34,13 @@ _VOLUMES = (
     "weft_fibre_fraction",
     "warp_fibre_fraction",
 )
-_CONSISTENCY = ("max_penetration_mm", "max_contact_gap_mm", "overlap_volume_mm3", "contact_area_mm2", "thickness_mm")
+_CONSISTENCY = (
+    "max_penetration_mm",
+    "max_contact_gap_mm",
+    "overlap_volume_mm3",
+    "contact_area_mm2",
+    "thickness_mm",
+)
 _MESH = (
     "nodes",
     "hexahedra",
@@ -55,6 +70,7 @@ def figure_names(depth: str, settings: Settings | None = None) -> tuple[str, ...
         for _, *place in point_columns(direction):
             names += [f"identified.{direction}.control_points.{column}" for column in place]
         names.append(f"identified.other_solution.{direction}_thickness_mm")
+
     names.append("identified.fabric_thickness_mm")
     names += [f"measured_vs_model.{quantity}.{name}" for quantity in CLOSING for name in _COMPARED]
     names += [f"volumes.{name}" for name in _VOLUMES]
@@ -67,8 +83,10 @@ def figure_names(depth: str, settings: Settings | None = None) -> tuple[str, ...
         known = settings.case(depth).figure_names() if settings is not None else ()
         contact = [field.name for field in fields(ContactReport)]
         names += [f"{depth}.{name}" for name in (*contact, *known)]
+
     if depth == STIFFNESS:
         names += [f"{depth}.{name}" for name in FIGURES]
+
     return tuple(names)
 
 
@@ -86,5 +104,8 @@ def figure_fault(name: str, depth: str, settings: Settings | None = None) -> str
     if deeper:
         return f"{quoted(name)} is a figure of depth {deeper}, this study is of depth {depth}"
 
-    hint = did_you_mean(name, known, 0.5) or f"; there are {', '.join(known[-12:])} and others, as in table.csv"
+    hint = (
+        did_you_mean(name, known, 0.5)
+        or f"; there are {', '.join(known[-12:])} and others, as in table.csv"
+    )
     return f"{quoted(name)} is no figure of depth {depth}{hint}"

@@ -23,6 +23,7 @@ def draw_sensitivities(name: str, design: str, rows: Sequence[dict], path: str |
     for ax, figure in zip(axes, figures):
         plot_sensitivity([row for row in rows if row["figure"] == figure], ax)
         ax.set_title(figure, fontsize="medium")
+
     for ax in axes[len(figures) :]:
         ax.remove()
     save_figure(picture, path, f"{name}: {design}")

@@ -53,13 +53,16 @@ class LocalWorkers:
         if worker not in self.processes:
             self.processes[worker] = _new_process()
 
-        with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # it died while free: told as ended
+        with contextlib.suppress(
+            BrokenPipeError, ConnectionResetError
+        ):  # it died while free: told as ended
             self.processes[worker][1].send((work, arguments))
 
     def ended(self, seconds: float) -> list[tuple[int, object]]:
         """(worker, result) of the tasks that ended, waited for at most so long.
 
-        The result is an exception where the task raised one, ChildProcessError where its worker died.
+        The result is an exception where the task raised one, ChildProcessError where its worker
+        died.
         """
         pipes = {self.processes[worker][1]: worker for worker in self.busy}
         results: list[tuple[int, object]] = []
@@ -74,6 +77,7 @@ class LocalWorkers:
             except (EOFError, OSError):
                 self._bury(worker)
                 results.append((worker, ChildProcessError("its worker died")))
+
         return results
 
     def _bury(self, worker: int) -> None:
@@ -124,6 +128,7 @@ def _serve(pipe: Connection, parent: int) -> None:
             return
         except Exception as error:
             result = error
+
         try:
             pipe.send(result)
         except BrokenPipeError:
@@ -135,13 +140,15 @@ def _serve(pipe: Connection, parent: int) -> None:
 def _end_with(parent: int) -> None:
     """End this process as soon as its parent is gone, whatever it is doing then.
 
-    On Linux the system sees to that, elsewhere a thread, which has to wait for code that holds Python's lock.
+    On Linux the system sees to that, elsewhere a thread, which has to wait for code that holds
+    Python's lock.
     """
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_DEATH_SIGNAL, signal.SIGKILL)
         if os.getppid() != parent:  # gone before
             os._exit(1)
         return
+
     watched = multiprocessing.parent_process()
 
     def wait() -> None:

@@ -17,7 +17,9 @@ from ..weave.weaves import Weave, weave_of
 from .design import Samples
 
 _KEPT = {field.name for field in fields(Family)}
-_FIELDS = {column: next(name for name in (column, f"{column}s") if name in _KEPT) for column in CHOICES}
+_FIELDS = {
+    column: next(name for name in (column, f"{column}s") if name in _KEPT) for column in CHOICES
+}
 """Where a table keeps its columns of choices: under their name, or its plural."""
 
 
@@ -46,19 +48,22 @@ def base_value(base: Family, column: str) -> Any:
 def study_rows(base: Family, samples: Samples) -> tuple[Family, dict[int, Problem]]:
     """A table of one row a unit, named ``<base row>_<unit>``, and what makes a row none, by row number.
 
-    ``base`` is a table of one row; standard deviations are dropped, since scatter is what is sampled.
+    ``base`` is a table of one row; standard deviations are dropped, since scatter is what is
+    sampled.
     """
     units = len(samples)
     (name,) = base.names
     repeated = base.take([0] * units)
     measured = dict(repeated.measured)
     choices: dict[str, Any] = {}
+
     for column, values in samples.values.items():
         if column in _FIELDS:
             choices[_FIELDS[column]] = tuple(values.tolist())
         elif column not in WEAVE_COLUMNS[base.family]:
             kept, unit = kept_column(column)
             measured[kept] = np.asarray(values, dtype=float) * unit
+
     weaves, faults = _weaves(base, samples)
     width = len(str(max(units - 1, 0)))
     table = replace(
@@ -70,6 +75,7 @@ def study_rows(base: Family, samples: Samples) -> tuple[Family, dict[int, Proble
         **choices,
     )
     refused = {at: table.problem(at, column, message) for at, (column, message) in faults.items()}
+
     return table, out_of_bounds(table) | refused
 
 
@@ -87,8 +93,10 @@ def _weaves(base: Family, samples: Samples) -> tuple[tuple[Weave, ...], dict[int
             if base.family == "pattern" and fault is None:
                 row["pattern"] = read_pattern(row["pattern"])
             known[cells] = (base.weaves[0] if fault else weave_of(base.family, row)), fault
+
         weave, fault = known[cells]
         weaves.append(weave)
         if fault:
             faults[at] = fault
+
     return tuple(weaves), faults

@@ -53,7 +53,8 @@ class Progress:
 class Counts:
     """What became of a study's units; ``before`` were finished by earlier runs.
 
-    ``reasons`` are (status, reason) of every refused or failed unit, ``notes`` what else is to be told.
+    ``reasons`` are (status, reason) of every refused or failed unit, ``notes`` what else is to be
+    told.
     """
 
     folder: Path
@@ -75,12 +76,14 @@ def run_study(
     """Run a study into the folder ``out/<study>``; units that an earlier run has finished are not run again.
 
     Leaves ``table.parquet`` and ``table.csv`` (one row a unit: factors, status, reason, figures),
-    ``sensitivity.csv``, ``.png`` and ``.pdf`` where something varies, ``costs.csv`` (times and memory of
-    every unit, not at depth identify) and, where the study keeps them, the units' files in ``cells``.
-    Units that failed in an earlier run are tried again. Raises :class:`FabricCadError`; what is finished stays.
+    ``sensitivity.csv``, ``.png`` and ``.pdf`` where something varies, ``costs.csv`` (times and
+    memory of every unit, not at depth identify) and, where the study keeps them, the units' files
+    in ``cells``. Units that failed in an earlier run are tried again. Raises
+    :class:`FabricCadError`; what is finished stays.
     """
     folder = Path(out) / study.name
     check_places(folder, study.keep)
+
     with held(folder):
         digest = _digest(study)
         written = written_digest(folder)  # and a lack of pyarrow is told before any work
@@ -107,8 +110,8 @@ def run_study(
 class _Fabrics:
     """The units of a study as far as a whole table of them is identified at once.
 
-    ``rows`` are the units that are fabrics; ``reasons`` say why the others are none; ``figures`` of the
-    fabrics are there where they are asked for.
+    ``rows`` are the units that are fabrics; ``reasons`` say why the others are none; ``figures`` of
+    the fabrics are there where they are asked for.
     """
 
     samples: Samples
@@ -120,7 +123,10 @@ class _Fabrics:
 
 @dataclass(frozen=True, eq=False)
 class _Ended:
-    """What became of every unit; ``before`` were there before, with ``is_written`` the whole table too."""
+    """What became of every unit.
+
+    ``before`` were there before, with ``is_written`` the whole table too.
+    """
 
     status: Sequence[str]
     reasons: Mapping[int, str]
@@ -141,7 +147,9 @@ def _fabrics(study: Study) -> _Fabrics:
     good = np.delete(np.arange(len(table)), list(refused))
     part = table.take(good.tolist()) if refused else table
     found = identify_rows(part)
-    reasons |= {int(good[row]): reason_of(InputError(problem)) for row, problem in found.refused.items()}
+    reasons |= {
+        int(good[row]): reason_of(InputError(problem)) for row, problem in found.refused.items()
+    }
 
     is_asked = study.figures or study.work.depth == "identify"
     figures = identified_figures(part, found) if is_asked else {}
@@ -156,7 +164,9 @@ def _identified(fabrics: _Fabrics, is_written: bool) -> _Ended:
     return _Ended(status, fabrics.reasons, figures, {}, units if is_written else 0, is_written)
 
 
-def _ended(fabrics: _Fabrics, outcomes: Mapping[int, Outcome], before: int, notes: Sequence[str]) -> _Ended:
+def _ended(
+    fabrics: _Fabrics, outcomes: Mapping[int, Outcome], before: int, notes: Sequence[str]
+) -> _Ended:
     """A study whose fabrics were each run."""
     units, reasons = len(fabrics.table), dict(fabrics.reasons)
     reasons |= {unit: outcome.reason for unit, outcome in outcomes.items() if outcome.reason}
@@ -169,9 +179,13 @@ def _ended(fabrics: _Fabrics, outcomes: Mapping[int, Outcome], before: int, note
 def _check_figures(study: Study, identified: Mapping[str, Sequence]) -> None:
     """Raise :class:`InputError` where no fabric of a study can have a figure that is asked for."""
     known_by_now = ("weave.", "identified.", "measured_vs_model.", "volumes.")
-    missing = [name for name in study.figures if name.startswith(known_by_now) and name not in identified]
+    missing = [
+        name for name in study.figures if name.startswith(known_by_now) and name not in identified
+    ]
     if missing:
-        message = f"{', '.join(missing)}: no fabric of this study has it; its rows lack what that needs"
+        message = (
+            f"{', '.join(missing)}: no fabric of this study has it; its rows lack what that needs"
+        )
         raise InputError(Problem(message, f"{study.name}.toml", column="figures"))
 
 
@@ -181,17 +195,35 @@ def _damage(store: Store) -> list[str]:
         return []
     count = len(store.damaged)
     what = "1 line is" if count == 1 else f"{count} lines are"
-    return [f"{what} not as written by a study ({store.damaged[0]}): passed over, their units are run again"]
+    return [
+        f"{what} not as written by a study ({store.damaged[0]}): passed over, their units are run again"
+    ]
 
 
 def _digest(study: Study) -> str:
     """Digest of all that a study's table depends on."""
     from .. import __version__
 
-    measured = {name: float(values[0]).hex() for name, values in sorted(study.base.measured.items())}
-    parts: list[object] = [__version__, study.base.family, repr(study.base.weaves), study.base.sections]
+    measured = {
+        name: float(values[0]).hex() for name, values in sorted(study.base.measured.items())
+    }
+    parts: list[object] = [
+        __version__,
+        study.base.family,
+        repr(study.base.weaves),
+        study.base.sections,
+    ]
     parts += [study.base.float_gaps, study.base.thicker, measured]
-    parts += [study.factors, study.design, study.samples, study.seed, study.work, *study.work.made_of, study.figures]
+    parts += [
+        study.factors,
+        study.design,
+        study.samples,
+        study.seed,
+        study.work,
+        *study.work.made_of,
+        study.figures,
+    ]
+
     return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
@@ -206,9 +238,13 @@ def _spread(figures: Mapping[str, Sequence], rows: np.ndarray, units: int) -> di
             spread[name][rows] = values
         else:
             column = [None] * units
-            for at, value in zip(rows.tolist(), values.tolist() if isinstance(values, np.ndarray) else values):
+            for at, value in zip(
+                rows.tolist(), values.tolist() if isinstance(values, np.ndarray) else values
+            ):
                 column[at] = value
+
             spread[name] = column
+
     return spread
 
 
@@ -233,7 +269,9 @@ def _run_units(
     keys = {at: unit_key(unit, study.work, study.keep) for at, unit in units.items()}
     cells = str((folder / "cells").absolute()) if study.keep else None
     copies = Counter(keys.values())
-    missing = {key: at for at, key in reversed(keys.items()) if key not in store.outcomes}  # equal units once
+    missing = {
+        key: at for at, key in reversed(keys.items()) if key not in store.outcomes
+    }  # equal units once
     missing = dict(reversed(missing.items()))
     before = len(fabrics.reasons) + sum(key in store.outcomes for key in keys.values())
     start, ended = time.perf_counter(), 0
@@ -253,6 +291,7 @@ def _run_units(
                 key, outcome = result
                 store.add(key, _outcome(outcome, study))
                 ended += copies[key]
+
             tell()
     except KeyboardInterrupt as error:
         done = before + ended
@@ -260,6 +299,7 @@ def _run_units(
         raise FabricCadError(message) from error
     finally:
         store.close()
+
     return {at: store.outcomes[key] for at, key in keys.items()}, before
 
 
@@ -268,7 +308,8 @@ def _outcome(result: object, study: Study) -> Outcome:
         return result
     if isinstance(result, ChildProcessError):
         return Outcome(
-            "failed", f"twice its worker died or took longer than limit_seconds = {study.work.limit_seconds:g}"
+            "failed",
+            f"twice its worker died or took longer than limit_seconds = {study.work.limit_seconds:g}",
         )
     return Outcome("failed", f"{type(result).__name__}: {result}")
 
@@ -276,8 +317,13 @@ def _outcome(result: object, study: Study) -> Outcome:
 def _write(study: Study, folder: Path, samples: Samples, ended: _Ended, digest: str) -> None:
     units, figures, costs = len(samples), ended.figures, ended.costs
     columns: dict[str, Any] = {"unit": np.arange(units), **samples.labels, **samples.values}
-    columns |= {"status": ended.status, "reason": [ended.reasons.get(at) for at in range(units)], **figures}
+    columns |= {
+        "status": ended.status,
+        "reason": [ended.reasons.get(at) for at in range(units)],
+        **figures,
+    }
     found = sensitivities(study.design, samples, figures, study.figures)
+
     with staged(folder, last="table.parquet") as aside:  # its digest says that the others are there
         write_table(columns, aside, digest)
         if found:
@@ -285,9 +331,11 @@ def _write(study: Study, folder: Path, samples: Samples, ended: _Ended, digest: 
             from .picture import draw_sensitivities
 
             draw_sensitivities(study.name, study.design, found, aside / "sensitivity.png")
+
         if costs:
             rows = [dict(zip(costs, values)) for values in zip(*costs.values())]
             _write_csv(aside / "costs.csv", [{"unit": at, **row} for at, row in enumerate(rows)])
+
     if not found:  # there may be those of what the study was before
         for name in ("sensitivity.csv", "sensitivity.png", "sensitivity.pdf"):
             (folder / name).unlink(missing_ok=True)
@@ -297,4 +345,6 @@ def _write_csv(path: Path, rows: Sequence[dict]) -> None:
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)))
         writer.writeheader()
-        writer.writerows({key: "" if value != value else value for key, value in row.items()} for row in rows)
+        writer.writerows(
+            {key: "" if value != value else value for key, value in row.items()} for row in rows
+        )

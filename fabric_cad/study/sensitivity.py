@@ -1,13 +1,15 @@
 """Which factor a figure depends on, by the means that a study's design allows.
 
-========================  ==============================================================================
-design                    columns
-========================  ==============================================================================
-sobol                     first-order and total Sobol indices with 95 % intervals (scipy.stats)
-one-at-a-time             the figure at the factor's ends, its change, elasticity (change over change,
-                          both relative to the base row)
-grid, latin-hypercube     Spearman's rank correlation and its p-value (scipy.stats)
-========================  ==============================================================================
+========================
+============================================================================== design
+columns
+========================
+============================================================================== sobol
+first-order and total Sobol indices with 95 % intervals (scipy.stats) one-at-a-time             the
+figure at the factor's ends, its change, elasticity (change over change, both relative to the base
+row) grid, latin-hypercube     Spearman's rank correlation and its p-value (scipy.stats)
+========================
+==============================================================================
 """
 
 from __future__ import annotations
@@ -32,7 +34,8 @@ def sensitivities(
 ) -> list[Row]:
     """One row a figure and factor; figures are columns of shape (units,), NaN where a unit has none.
 
-    Those ``asked`` for, else those of :func:`~fabric_cad.study.figures.headline`; one that does not vary has no row.
+    Those ``asked`` for, else those of :func:`~fabric_cad.study.figures.headline`; one that does not
+    vary has no row.
     """
     rows: list[Row] = []
     for name in asked or headline():
@@ -42,7 +45,9 @@ def sensitivities(
     return rows
 
 
-def left_out(asked: Sequence[str], figures: Mapping[str, Sequence], rows: Sequence[Row]) -> list[str]:
+def left_out(
+    asked: Sequence[str], figures: Mapping[str, Sequence], rows: Sequence[Row]
+) -> list[str]:
     """Why figures that were asked for have no row in ``rows``, a sentence each."""
     notes = []
     for name in dict.fromkeys(asked):
@@ -53,9 +58,12 @@ def left_out(asked: Sequence[str], figures: Mapping[str, Sequence], rows: Sequen
             notes.append(f"{name} has no sensitivities: no unit has it")
         elif not _vary(values):
             value = values[~np.isnan(values)][0]
-            notes.append(f"{name} has no sensitivities: it is {value:.6g} in every unit, whatever the factors")
+            notes.append(
+                f"{name} has no sensitivities: it is {value:.6g} in every unit, whatever the factors"
+            )
         else:
             notes.append(f"{name} has no sensitivities: too few units have it")
+
     return notes
 
 
@@ -72,7 +80,8 @@ def _vary(values: np.ndarray) -> bool:
 def sobol_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
     """First-order and total indices from Saltelli's design.
 
-    A base sample with a refused or failed unit is left out, and of the others the first power of two is taken.
+    A base sample with a refused or failed unit is left out, and of the others the first power of
+    two is taken.
     """
     from scipy import stats
 
@@ -106,12 +115,17 @@ def sobol_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
         method="percentile",
         rng=np.random.default_rng(0),
     ).confidence_interval
+
     return [
         {"factor": factor}
         | {
             f"{order}{end}": float(what[number, k])
             for number, order in enumerate(("first_order", "total"))
-            for end, what in (("", everything), ("_low", np.asarray(spread.low)), ("_high", np.asarray(spread.high)))
+            for end, what in (
+                ("", everything),
+                ("_low", np.asarray(spread.low)),
+                ("_high", np.asarray(spread.high)),
+            )
         }
         | {"samples": used}
         for k, factor in enumerate(samples.values)
@@ -122,11 +136,16 @@ def one_at_a_time_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]
     """Change of a figure between the least and greatest value of each factor that gave one."""
     changed = np.array(samples.labels["changed"])
     rows: list[Row] = []
+
     for factor, column in samples.values.items():
         at = np.flatnonzero(((changed == factor) | (changed == "")) & ~np.isnan(values))
         if column.dtype.kind not in "if":
-            rows += [{"factor": factor, "value": str(column[k]), "figure_value": float(values[k])} for k in at]
+            rows += [
+                {"factor": factor, "value": str(column[k]), "figure_value": float(values[k])}
+                for k in at
+            ]
             continue
+
         at = at[~np.isnan(column[at].astype(float))]
         if len(at) < 2:
             continue
@@ -145,6 +164,7 @@ def one_at_a_time_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]
                 "elasticity": rise / run * base_factor / base_figure if known else np.nan,
             }
         )
+
     return rows
 
 
@@ -159,7 +179,14 @@ def rank_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
         there = ~np.isnan(values) & ~np.isnan(column.astype(float))
         if there.sum() > 2 and np.ptp(column[there]) > 0 and _vary(values[there]):
             found = stats.spearmanr(column[there], values[there])
-            rows.append({"factor": factor, "spearman": float(found.statistic), "p_value": float(found.pvalue)})
+            rows.append(
+                {
+                    "factor": factor,
+                    "spearman": float(found.statistic),
+                    "p_value": float(found.pvalue),
+                }
+            )
+
     return rows
 
 
@@ -181,6 +208,9 @@ def read_sensitivities(folder: str | Path) -> list[Row]:
     with open(Path(folder) / "sensitivity.csv", newline="", encoding="utf-8") as file:
         texts = ("figure", "factor", "value")
         return [
-            {name: cell if name in texts else float(cell) if cell else None for name, cell in row.items()}
+            {
+                name: cell if name in texts else float(cell) if cell else None
+                for name, cell in row.items()
+            }
             for row in csv.DictReader(file)
         ]

@@ -21,7 +21,10 @@ KINDS: Mapping[type, str] = {
 
 
 def is_kind(value: object, kind: type) -> bool:
-    """True where a value of TOML is of a kind; a whole number is a number, true and false are none."""
+    """True where a value of TOML is of a kind.
+
+    A whole number is a number, true and false are none.
+    """
     if kind is float:
         number = isinstance(value, (int, float)) and not isinstance(value, bool)
         return number and math.isfinite(value)  # type: ignore[arg-type]
@@ -30,7 +33,10 @@ def is_kind(value: object, kind: type) -> bool:
 
 @dataclass(frozen=True)
 class StudyFile:
-    """The content of a study's file; ``lines`` are those of its keys, ``problems`` are gathered as it is read."""
+    """The content of a study's file.
+
+    ``lines`` are those of its keys, ``problems`` are gathered as it is read.
+    """
 
     path: Path
     content: Mapping

@@ -19,7 +19,9 @@ def _pyarrow():
         import pyarrow.csv
         import pyarrow.parquet
     except ImportError as error:
-        raise FabricCadError("a study's table needs pyarrow: pip install 'fabric-cad[study]'") from error
+        raise FabricCadError(
+            "a study's table needs pyarrow: pip install 'fabric-cad[study]'"
+        ) from error
     return pyarrow
 
 
@@ -50,7 +52,10 @@ def written_digest(folder: Path) -> str | None:
 
 
 def read_table(folder: str | Path) -> dict[str, np.ndarray]:
-    """The columns of a study's ``table.parquet`` by name, each of shape (units,); empty cells are NaN or None."""
+    """The columns of a study's ``table.parquet`` by name, each of shape (units,).
+
+    Empty cells are NaN or None.
+    """
     pa = _pyarrow()
     table = pa.parquet.read_table(Path(folder) / NAMES[0])
     return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}

@@ -72,6 +72,7 @@ def _direction(solved: Mapping[str, Any], d: Direction) -> Columns:
     }
     for _, *place in point_columns(d):
         figures |= {f"identified.{d}.control_points.{column}": solved[column] for column in place}
+
     return figures
 
 
@@ -81,7 +82,9 @@ def _other_solutions(solved: Mapping[str, Any]) -> Columns:
     for d in DIRECTIONS:
         others = solved[f"other_{d}_thickness_mm"]
         if any(value != "" for value in others):
-            figures[f"identified.other_solution.{d}_thickness_mm"] = [None if v == "" else v for v in others]
+            figures[f"identified.other_solution.{d}_thickness_mm"] = [
+                None if v == "" else v for v in others
+            ]
     return figures
 
 
@@ -100,14 +103,18 @@ def _compared(found: Identified) -> Columns:
     return figures
 
 
-def _warnings(table: Family, found: Identified, volumes: Mapping[str, np.ndarray]) -> dict[str, list[str | None]]:
+def _warnings(
+    table: Family, found: Identified, volumes: Mapping[str, np.ndarray]
+) -> dict[str, list[str | None]]:
     """The warnings of every fabric as one text, where any has some."""
     told: dict[str | None, list[str]] = {}
     for problem in implausible(table.take(found.rows.tolist()), found.columns):
         told.setdefault(problem.row, []).append(str(problem))
 
     fractions: dict[str, np.ndarray] = {
-        d: volumes[f"volumes.{d}_fibre_fraction"] for d in DIRECTIONS if f"volumes.{d}_fibre_fraction" in volumes
+        d: volumes[f"volumes.{d}_fibre_fraction"]
+        for d in DIRECTIONS
+        if f"volumes.{d}_fibre_fraction" in volumes
     }
     overfull = np.any([share > DENSEST for share in fractions.values()], axis=0)
     for number in np.flatnonzero(overfull).tolist() if fractions else ():
@@ -120,7 +127,11 @@ def _warnings(table: Family, found: Identified, volumes: Mapping[str, np.ndarray
 
 
 def _volumes(
-    table: Family, found: Identified, weaves: tuple[Weave, ...], wefts: np.ndarray, warps: np.ndarray
+    table: Family,
+    found: Identified,
+    weaves: tuple[Weave, ...],
+    wefts: np.ndarray,
+    warps: np.ndarray,
 ) -> dict[str, np.ndarray]:
     solved: Mapping[str, Any] = found.columns
     volumes = yarn_volumes(solved, weaves)
@@ -147,6 +158,7 @@ def _volumes(
         fraction = section * count * extent * lengths[d] / volumes[d]
         if not np.isnan(fraction).all():
             figures[f"volumes.{d}_fibre_fraction"] = fraction
+
     return figures
 
 

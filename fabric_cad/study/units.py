@@ -56,7 +56,10 @@ class Work:
 
     @property
     def made_of(self) -> list[str]:
-        """The constituents as text, for digests, wherever they were read from; nothing at other depths."""
+        """The constituents as text, for digests, wherever they were read from.
+
+        Nothing at other depths.
+        """
         return [repr(replace(self.constituents, path=""))] if self.constituents else []
 
 
@@ -83,10 +86,13 @@ def _load(case: str, row: Family, work: Work, folder: Path, stages: Stages) -> d
         raise ValueError(f"a unit of depth {case} needs materials and loads")
 
     solver = Solver(threads=1, time_limit=0.8 * work.limit_seconds)  # before the unit's own end
-    report, cell = run_case(case, row, settings, folder, solver=solver, mesh=work.mesh, stages=stages)
+    report, cell = run_case(
+        case, row, settings, folder, solver=solver, mesh=work.mesh, stages=stages
+    )
     if not report.solver.finished:
         raise SolverError(f"the solver {report.solver.reason}")
     figures = settings.case(case).figures(report.findings) | asdict(report.contact)
+
     return cell.content() | {case: figures, "options": report.origin["options"]}
 
 
@@ -108,7 +114,10 @@ Depth = Callable[[Family, Work, Path, Stages], dict]
 
 
 def depths() -> dict[str, Depth | None]:
-    """How far a study may go, in order; at ``identify`` whole tables at once, see :mod:`fabric_cad.study.run`."""
+    """How far a study may go, in order.
+
+    At ``identify`` whole tables at once, see :mod:`fabric_cad.study.run`.
+    """
     studied = [name for name, case in load_cases().items() if case.is_studied]
     loaded = {name: partial(_load, name) for name in studied}
     return {"identify": None, "cell": _cell, "mesh": _mesh, **loaded, STIFFNESS: _stiffness}
@@ -131,7 +140,11 @@ def run_unit(row: Family, work: Work, keep: str | None) -> Outcome:
             return Outcome("refused", reason_of(error))
         except FabricCadError as error:
             return Outcome("failed", str(error))
-        seconds = stages.seconds | {"total": time.perf_counter() - start, "processor": time.process_time() - used}
+
+        seconds = stages.seconds | {
+            "total": time.perf_counter() - start,
+            "processor": time.process_time() - used,
+        }
         costs = {name: round(value, 4) for name, value in seconds.items()}
         return Outcome("done", "", flat(report), costs | _memory())
 
@@ -167,7 +180,9 @@ def _memory() -> dict[str, float]:
 
 def reason_of(error: InputError) -> str:
     """Why a row is no fabric: its columns and what is wrong with them, without the place in a file."""
-    return "; ".join(f"{each.column}: {each.message}" if each.column else each.message for each in error.problems)
+    return "; ".join(
+        f"{each.column}: {each.message}" if each.column else each.message for each in error.problems
+    )
 
 
 @contextmanager

@@ -14,7 +14,9 @@ MOST_TOLD = 50
 
 def printable(text: str) -> str:
     """The text with all that a terminal would obey, and what turns the direction of writing, as escapes."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
+    )
 
 
 def quoted(value: object, most: int = 300) -> str:
@@ -80,10 +82,16 @@ class Place:
     letters: Mapping[str, str] = field(default_factory=dict)
 
     def problem(
-        self, message: str, line: int | None = None, column: str | None = None, row: str | None = None
+        self,
+        message: str,
+        line: int | None = None,
+        column: str | None = None,
+        row: str | None = None,
     ) -> Problem:
         """A :class:`Problem` of this table, at a line and a column."""
-        return Problem(message, self.path, line, column, row, self.sheet, self.letters.get(column or ""))
+        return Problem(
+            message, self.path, line, column, row, self.sheet, self.letters.get(column or "")
+        )
 
 
 def did_you_mean(name: str, known: Iterable[str], cutoff: float = 0.6) -> str:
@@ -109,7 +117,10 @@ class FabricCadError(Exception):
 
 
 class InputError(FabricCadError):
-    """The input is wrong; carries every :class:`Problem` found, of which it prints 50 a file; exit status 2."""
+    """The input is wrong; carries every :class:`Problem` found, of which it prints 50 a file.
+
+    Exit status 2.
+    """
 
     exit_status = 2
 
@@ -137,7 +148,9 @@ class ArgumentError(InputError, TypeError):
 def expect(value: object, kind: type, name: str, hint: str = "") -> None:
     """Raise :class:`ArgumentError` where the argument ``name`` is none of a kind."""
     if not isinstance(value, kind):
-        raise ArgumentError(f"{name}: expected a {kind.__name__}{hint}, got {type(value).__name__} {value!r:.60}")
+        raise ArgumentError(
+            f"{name}: expected a {kind.__name__}{hint}, got {type(value).__name__} {value!r:.60}"
+        )
 
 
 def _told(problems: Iterable[Problem]) -> list[str]:

@@ -32,6 +32,7 @@ def carry_over(old: Path, new: Path, seen: Seen, inside: str = "") -> None:
                 carry_over(old / entry.name, place, seen, f"{name}/")
                 shutil.copystat(entry.path, place)
                 continue
+
             seen[name] = _state(entry.path)
             if not os.path.lexists(place):
                 _link(entry.path, place)
@@ -55,7 +56,10 @@ def _link(source: str, place: Path) -> None:
 
 
 def rescue(old: Path, new: Path, seen: Seen, written: set[str]) -> None:
-    """Bring over what others put into ``old`` after it was carried over; what this run wrote wins."""
+    """Bring over what others put into ``old`` after it was carried over.
+
+    What this run wrote wins.
+    """
     for path in _files(old):
         name = path.relative_to(old).as_posix()
         with suppress(OSError):
@@ -70,7 +74,10 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def to_disk(path: Path, there: Collection[int] = ()) -> None:
-    """Return when a file, or a folder with all in it, is on the disk; files with inodes in ``there`` are already."""
+    """Return when a file, or a folder with all in it, is on the disk.
+
+    Files with inodes in ``there`` are already.
+    """
     if path.is_symlink():
         return
     if path.is_dir():
@@ -103,13 +110,14 @@ def _flush(path: Path, flags: int) -> None:
 def put_in_place(new: Path, target: Path, spare: Path) -> Path | None:
     """Make the folder ``new`` the one at ``target``; where the former one is now, None where there was none.
 
-    One step on Linux, where the file system can exchange two folders (ext4, XFS, Btrfs, tmpfs can; NFS cannot).
-    Elsewhere two: the former one goes to ``spare``, and a run killed between the two is completed by
-    :func:`complete`. Raises OSError; the former one then is at ``target``.
+    One step on Linux, where the file system can exchange two folders (ext4, XFS, Btrfs, tmpfs can;
+    NFS cannot). Elsewhere two: the former one goes to ``spare``, and a run killed between the two
+    is completed by :func:`complete`. Raises OSError; the former one then is at ``target``.
     """
     if not os.path.lexists(target):
         os.rename(new, target)
         return None
+
     if _exchange(new, target):
         return new
     os.rename(target, spare)
@@ -118,6 +126,7 @@ def put_in_place(new: Path, target: Path, spare: Path) -> Path | None:
     except OSError:
         os.rename(spare, target)
         raise
+
     return spare
 
 

@@ -24,6 +24,7 @@ def stoppable() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+
     ours = [number for number in _SIGNALS if signal.getsignal(number) is signal.SIG_DFL]
 
     def stop(number, frame) -> None:
@@ -45,12 +46,14 @@ def uninterrupted() -> Iterator[None]:
     """Hold these signals back until the block is done: while files move into place, and while libraries load.
 
     CadQuery and VTK, interrupted halfway through their import, crash, or report a part of
-    themselves as missing; and where a module was just making a dataclass, which takes exec, Python ends
-    with the signal in place of our exit status. Does nothing off the main thread, which signals do not reach.
+    themselves as missing; and where a module was just making a dataclass, which takes exec, Python
+    ends with the signal in place of our exit status. Does nothing off the main thread, which
+    signals do not reach.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+
     sent: list[int] = []
     before = {number: signal.getsignal(number) for number in _SIGNALS}
     held = [number for number, handler in before.items() if handler not in (None, signal.SIG_IGN)]
@@ -61,5 +64,6 @@ def uninterrupted() -> Iterator[None]:
     finally:
         for number in held:
             signal.signal(number, before[number])
+
     if sent:
         signal.raise_signal(sent[0])

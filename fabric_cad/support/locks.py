@@ -1,8 +1,8 @@
 """Locks on files: the system lets go of one when its last holder ends, however it does.
 
-``flock`` rather than ``lockf``: a child can hold it along with its parent (ccx does), and it is not lost when
-the process closes another descriptor of the same file. Linux hands it on to an NFS server as a lock of the whole
-file, so that it holds between machines too. Windows has ``msvcrt.locking``.
+``flock`` rather than ``lockf``: a child can hold it along with its parent (ccx does), and it is not
+lost when the process closes another descriptor of the same file. Linux hands it on to an NFS server
+as a lock of the whole file, so that it holds between machines too. Windows has ``msvcrt.locking``.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ def open_lock(path: Path) -> int:
 
 
 def take(descriptor: int) -> bool:
-    """Take a lock, without waiting; False where another holds it. Raises OSError where there are no locks."""
+    """Take a lock, without waiting.
+
+    False where another holds it. Raises OSError where there are no locks.
+    """
     try:
         import fcntl
     except ImportError:

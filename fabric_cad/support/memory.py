@@ -54,6 +54,8 @@ def _own_limit() -> int | None:
         limit = resource.getrlimit(resource.RLIMIT_AS)[0]
         if limit == resource.RLIM_INFINITY:
             return None
-        return max(0, limit - resource.getpagesize() * int(Path("/proc/self/statm").read_text().split()[0]))
+        return max(
+            0, limit - resource.getpagesize() * int(Path("/proc/self/statm").read_text().split()[0])
+        )
     except (ImportError, OSError, ValueError):  # not on Windows; no /proc
         return None

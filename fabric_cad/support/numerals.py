@@ -1,6 +1,7 @@
 """Numbers as a person writes them: ASCII digits only.
 
-Python's own ``float`` and ``int`` read the digits of every script, ``1_000``, ``nan`` and ``inf`` too.
+Python's own ``float`` and ``int`` read the digits of every script, ``1_000``, ``nan`` and ``inf``
+too.
 """
 
 from __future__ import annotations

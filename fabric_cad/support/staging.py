@@ -1,6 +1,7 @@
 """Results are written aside and put in place in one step, when all of them are there.
 
-A reader who opens a row's folder at any moment finds one complete result; so does who looks after a kill.
+A reader who opens a row's folder at any moment finds one complete result; so does who looks after a
+kill.
 """
 
 from __future__ import annotations
@@ -21,18 +22,22 @@ _commits: list[Path] | None = None
 
 
 @contextmanager
-def staged(target: Path, seal: Callable[[Path], None] | None = None, last: str | None = None) -> Iterator[Path]:
+def staged(
+    target: Path, seal: Callable[[Path], None] | None = None, last: str | None = None
+) -> Iterator[Path]:
     """A folder to write in, which on success becomes ``target``, with the other files that are there.
 
-    A folder in it replaces its like as a whole. ``seal`` is called with the complete folder, files that stay
-    included, before it is put in place; it may write and remove, but not change files that stay. On any error,
-    Ctrl-C included, ``target`` is untouched and the folder is gone. Another run with the same target is waited for.
+    A folder in it replaces its like as a whole. ``seal`` is called with the complete folder, files
+    that stay included, before it is put in place; it may write and remove, but not change files
+    that stay. On any error, Ctrl-C included, ``target`` is untouched and the folder is gone.
+    Another run with the same target is waited for.
 
-    With ``last``, the name of a file, ``target`` stays the folder it is and takes the files one by one, that
-    one at the end: it says that the others are complete (a study's folder, at work in other files meanwhile).
+    With ``last``, the name of a file, ``target`` stays the folder it is and takes the files one by
+    one, that one at the end: it says that the others are complete (a study's folder, at work in
+    other files meanwhile).
 
-    Raises :class:`OutputError` where ``target`` cannot be written, or is a link: a row's files are not written
-    out of the output folder.
+    Raises :class:`OutputError` where ``target`` cannot be written, or is a link: a row's files are
+    not written out of the output folder.
     """
     with output_errors(target):
         _check(target)
@@ -84,6 +89,7 @@ def _replace(aside: Path, target: Path, spare: Path, seal: Callable[[Path], None
     if target.exists():
         folders.carry_over(target, aside, seen)
         shutil.copystat(target, aside)
+
     if seal is not None:
         seal(aside)
     folders.to_disk(aside, {inode for inode, *_ in seen.values()})
@@ -133,7 +139,9 @@ def output_errors(target: Path) -> Iterator[None]:
             raise OutputError(f"{target}: no space left on the device") from error
         if isinstance(error, BuildError) and (free := _free(target)) < _LITTLE:
             # a library that fails to write may take away what it wrote, and leaves room again
-            raise OutputError(f"{error}; the device of {target} has only {free / 1e6:.2g} MB left") from error
+            raise OutputError(
+                f"{error}; the device of {target} has only {free / 1e6:.2g} MB left"
+            ) from error
         if isinstance(error, FabricCadError):
             raise
         raise OutputError(f"{target}: cannot be written: {error.strerror or error}") from error

@@ -20,13 +20,17 @@ def read_toml(path: str | Path) -> tuple[dict, dict[str, int]]:
         text = raw.decode("utf-8-sig")
         return tomllib.loads(text), key_lines(text)
     except UnicodeDecodeError as error:
-        raise InputError(Problem("not UTF-8 text", str(path), raw[: error.start].count(b"\n") + 1)) from error
+        raise InputError(
+            Problem("not UTF-8 text", str(path), raw[: error.start].count(b"\n") + 1)
+        ) from error
     except tomllib.TOMLDecodeError as error:
         found = re.search(r"\(at line (\d+), column \d+\)", str(error))
         message = f"not TOML: {str(error).split(' (at')[0]}"
         raise InputError(Problem(message, str(path), int(found[1]) if found else None)) from error
     except RecursionError as error:
-        raise InputError(Problem("not TOML that can be read: its brackets are nested too deeply", str(path))) from error
+        raise InputError(
+            Problem("not TOML that can be read: its brackets are nested too deeply", str(path))
+        ) from error
     except ValueError as error:  # an integer of thousands of digits
         raise InputError(Problem(f"not TOML that can be read: {error}", str(path))) from error
 

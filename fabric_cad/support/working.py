@@ -35,8 +35,8 @@ _held: dict[Path, int] = {}
 def working_folder(parent: Path, name: str) -> Iterator[Path]:
     """The folder to make ``parent/name`` in, empty, which is this run's alone; gone afterwards.
 
-    Waits, and says so, while another run is at work on the same name. On a file system without locks every run
-    gets a folder of its own, which nobody clears away after it.
+    Waits, and says so, while another run is at work on the same name. On a file system without
+    locks every run gets a folder of its own, which nobody clears away after it.
     """
     work = _Work(parent, name)
     try:
@@ -49,7 +49,10 @@ def working_folder(parent: Path, name: str) -> Iterator[Path]:
 
 @contextmanager
 def scratch_folder(parent: Path) -> Iterator[Path]:
-    """A folder for what nobody keeps; gone afterwards, and with the next one where this run is killed."""
+    """A folder for what nobody keeps.
+
+    Gone afterwards, and with the next one where this run is killed.
+    """
     clear_leftovers(parent)
     with working_folder(parent, f".{secrets.token_hex(8)}") as folder:
         inside = folder / NEW
@@ -60,7 +63,9 @@ def scratch_folder(parent: Path) -> Iterator[Path]:
 def lock_of(folder: Path) -> int | None:
     """Descriptor of the lock on the working folder that holds ``folder``, for a child to hold along with us."""
     places = (folder.absolute(), folder.resolve())
-    return next((_held[place] for path in places for place in (path, *path.parents) if place in _held), None)
+    return next(
+        (_held[place] for path in places for place in (path, *path.parents) if place in _held), None
+    )
 
 
 def clear_leftovers(parent: Path) -> None:
@@ -80,7 +85,9 @@ def clear_leftovers(parent: Path) -> None:
 def _own(folder: Path) -> bool:
     """Whether it is a folder of this user's; in a shared temp folder others put theirs."""
     with suppress(OSError):
-        return folder.is_dir() and (not hasattr(os, "geteuid") or folder.stat().st_uid == os.geteuid())
+        return folder.is_dir() and (
+            not hasattr(os, "geteuid") or folder.stat().st_uid == os.geteuid()
+        )
     return False
 
 
@@ -109,13 +116,20 @@ class _Work:
                 self.folder.mkdir()
                 self.owned = True
                 return
+
             if not self.owned:
                 looks += 1
                 if looks == _PATIENCE and self.descriptor is not None:
                     who = locks.holder(self.descriptor)
-                    _log.warning("%s: another run is at work on it (%s); waiting for its end", self.target, who)
+                    _log.warning(
+                        "%s: another run is at work on it (%s); waiting for its end",
+                        self.target,
+                        who,
+                    )
+
                 self.leave()
                 time.sleep(_POLL)
+
         if self.descriptor is None:
             raise RuntimeError(f"{self.folder}: owned without a lock")
         locks.sign(self.descriptor)
@@ -128,7 +142,9 @@ class _Work:
             self.descriptor = locks.open_lock(self.folder / _LOCK)
         except FileNotFoundError:
             return False  # the run before has just removed it
-        if not (locks.take(self.descriptor) and locks.is_in_place(self.descriptor, self.folder / _LOCK)):
+        if not (
+            locks.take(self.descriptor) and locks.is_in_place(self.descriptor, self.folder / _LOCK)
+        ):
             return False
         if not self.target.name.startswith("."):  # not that of a scratch folder
             folders.complete(self.folder / NEW, self.target, self.folder / OLD)
@@ -145,9 +161,11 @@ class _Work:
             with suppress(OSError):
                 _empty(self.folder)
                 (self.folder / _LOCK).unlink(missing_ok=True)
+
         if self.descriptor is not None:
             os.close(self.descriptor)
             self.descriptor = None
+
         with suppress(OSError):
             if os.name != "posix":
                 (self.folder / _LOCK).unlink()  # fails where another run has it

@@ -24,7 +24,10 @@ class BodyKind(StrEnum):
 
 @dataclass(frozen=True)
 class Body:
-    """One body of a cell; a yarn (:class:`YarnBody`) has a direction and an index, others neither."""
+    """One body of a cell.
+
+    A yarn (:class:`YarnBody`) has a direction and an index, others neither.
+    """
 
     kind: BodyKind
     direction: Direction | None = None
@@ -73,7 +76,10 @@ class YarnBody(Body):
 
 
 class SurfaceKind(StrEnum):
-    """A part of a yarn's surface; its ends lie a period apart. In a composite it is bonded to the matrix where free."""
+    """A part of a yarn's surface.
+
+    Its ends lie a period apart. In a composite it is bonded to the matrix where free.
+    """
 
     CONTACT = "contact"
     FREE = "free"

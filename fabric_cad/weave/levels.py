@@ -26,11 +26,14 @@ class Level:
     wefts_below: int
     warps_below: int
 
-    def height(self, direction: Direction, weft_amplitude: np.ndarray, warp_amplitude: np.ndarray) -> np.ndarray:
+    def height(
+        self, direction: Direction, weft_amplitude: np.ndarray, warp_amplitude: np.ndarray
+    ) -> np.ndarray:
         """Height of the midline of a yarn of a direction, from that of the lowest weft; mm, arrays broadcast.
 
-        A weft below raises by the warps' amplitude A2, a warp below by the wefts' A1, and warps stand
-        (A1 - A2) / 2 higher: then neighbours at a crossing are (A1 + A2) / 2 apart. (14), (A.29), (A.35)
+        A weft below raises by the warps' amplitude A2, a warp below by the wefts' A1, and warps
+        stand (A1 - A2) / 2 higher: then neighbours at a crossing are (A1 + A2) / 2 apart. (14),
+        (A.29), (A.35)
         """
         A1, A2 = weft_amplitude, warp_amplitude
         if direction is Direction.WEFT:

@@ -35,8 +35,10 @@ def read_pattern(text: str) -> tuple[str, ...]:
             "for a weft over and under a warp "
             "(a spreadsheet makes a date of 10/01, but not of ou/uo)"
         )
+
     if used & _DIGITS and used & _LETTERS:
         raise ValueError(f"{quoted(text)} has digits and letters; write 1 and 0, or o and u")
+
     return tuple(row.translate(str.maketrans("ou", "10")) for row in marks)
 
 

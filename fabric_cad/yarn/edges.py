@@ -47,15 +47,19 @@ def allowed_over(parts: Iterable[Swept]) -> float:
     """The same over some yarns, or over the tiles of all of them."""
     worst = 1.0
     known: set[bytes] = set()
+
     for swept in parts:
         sections = swept.sections
         for piece, first, second in zip(swept.trajectory.pieces, sections, sections[1:]):
             shape = [piece.poles - piece.poles[0], piece.knots - piece.knots[0]]
-            shape += [_edge(section, *place)[:2] for section in (first, second) for place in _PLACES]
+            shape += [
+                _edge(section, *place)[:2] for section in (first, second) for place in _PLACES
+            ]
             key = b"".join(np.round(each, 12).tobytes() for each in shape)
             if key not in known:
                 known.add(key)
                 worst = min(worst, _worst_of(piece, first, second))
+
     return worst
 
 
@@ -76,16 +80,23 @@ def _worst_of(piece: Spline, first: Section, second: Section) -> float:
     blend, rate = share**2 * (3 - 2 * share), 6 * share * (1 - share) / length
     slope = _slope(piece, share)
     found = []
+
     for end in (0, -1):
         sides = []
         for level in ("lower", "upper"):
-            (z_start, start), (z_stop, stop) = (_edge(section, level, end) for section in (first, second))
+            (z_start, start), (z_stop, stop) = (
+                _edge(section, level, end) for section in (first, second)
+            )
             sides.append((slope + (z_stop - z_start) * rate, (1 - blend) * start + blend * stop))
+
         if first.pointed:
             (edge, bottom), (_, top) = sides
-            found.append(np.abs(top - bottom) / np.sqrt((1 + top**2) * (1 + bottom**2) * (1 + edge**2)))
+            found.append(
+                np.abs(top - bottom) / np.sqrt((1 + top**2) * (1 + bottom**2) * (1 + edge**2))
+            )
         else:
             found += [1 / np.sqrt((1 + across**2) * (1 + edge**2)) for edge, across in sides]
+
     return float(np.min(found))
 
 

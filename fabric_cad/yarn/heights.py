@@ -11,7 +11,9 @@ from .swept import SweptYarn
 _TURNS = 8
 
 
-def heights(swept: SweptYarn, places: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def heights(
+    swept: SweptYarn, places: np.ndarray, across: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper face of a yarn, z (places, across), mm, over a grid in plan; NaN beside the yarn.
 
     ``places`` are along the yarn, ``across`` from its axis, mm.
@@ -19,6 +21,7 @@ def heights(swept: SweptYarn, places: np.ndarray, across: np.ndarray) -> tuple[n
     places, across = np.asarray(places, dtype=float), np.asarray(across, dtype=float)
     faces = {side: np.full((len(places), len(across)), np.nan) for side in (-1, 1)}
     segments = segments_of(swept, places)
+
     for patch in swept.skin.patches:
         within = np.flatnonzero(segments == patch.segment)
         if (side := level_of(patch)) and len(within):
@@ -49,7 +52,9 @@ def _heights(patch: Patch, places: np.ndarray, across: np.ndarray) -> np.ndarray
         basis = basis_across(patch)((across[columns] - ends[0, 0]) / (ends[0, 1] - ends[0, 0]))
         heights[:, columns] = poles @ basis.T
     else:
-        basis = basis_across(patch)((across[column] - ends[plane, 0]) / (ends[plane, 1] - ends[plane, 0]))
+        basis = basis_across(patch)(
+            (across[column] - ends[plane, 0]) / (ends[plane, 1] - ends[plane, 0])
+        )
         heights[plane, column] = np.einsum("na,na->n", poles[plane], basis)
 
     return heights
@@ -58,12 +63,14 @@ def _heights(patch: Patch, places: np.ndarray, across: np.ndarray) -> np.ndarray
 def _height_of_arc(patch: Patch, places: np.ndarray, across: np.ndarray) -> np.ndarray:
     """Heights (points,) of an arc at ``places`` and ``across`` (points,).
 
-    In a plane of its parameter along it is a conic, whose share across is the root of a quadratic equation; by how
-    much the place differs from that parameter depends on the share, hardly, so that both are found by turns.
+    In a plane of its parameter along it is a conic, whose share across is the root of a quadratic
+    equation; by how much the place differs from that parameter depends on the share, hardly, so
+    that both are found by turns.
     """
     along, across_basis = spline_along(patch), basis_across(patch)
     rate = along.derivative()
     parameter = places.copy()
+
     for _ in range(_TURNS):
         poles = along(parameter)
         shares = _root_of_conic(poles[..., 1] - across[:, None] * poles[..., 3])
@@ -81,4 +88,6 @@ def _root_of_conic(coefficients: np.ndarray) -> np.ndarray:
     first, middle, last = coefficients.T
     rise = middle - first
     root = np.sqrt(np.maximum(rise**2 - first * (first - 2 * middle + last), 0.0))
-    return np.clip(np.divide(-first, rise + root, out=np.zeros_like(first), where=rise + root > 0), 0.0, 1.0)
+    return np.clip(
+        np.divide(-first, rise + root, out=np.zeros_like(first), where=rise + root > 0), 0.0, 1.0
+    )

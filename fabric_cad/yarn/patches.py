@@ -1,7 +1,8 @@
 """A face of a yarn as splines, and which of its faces a place lies under.
 
-Of pointed and flat sections a patch's parameter along is the place along the yarn; where two round sections with
-different arcs blend, it is not quite, since a rational spline's weights pull it, and is solved for.
+Of pointed and flat sections a patch's parameter along is the place along the yarn; where two round
+sections with different arcs blend, it is not quite, since a rational spline's weights pull it, and
+is solved for.
 """
 
 from __future__ import annotations

@@ -48,7 +48,9 @@ def control_planes(fabric: SolvedFabric, yarn: Yarn) -> tuple[ControlPlane, ...]
     return tuple(planes)
 
 
-def contact_patches(fabric: SolvedFabric) -> dict[tuple[str, str], tuple[float, float, float, float]]:
+def contact_patches(
+    fabric: SolvedFabric,
+) -> dict[tuple[str, str], tuple[float, float, float, float]]:
     """Plan rectangle (x from, x to, y from, y to; mm) in which each weft touches each warp."""
     found = {}
     for i, row in enumerate(fabric.weave.interlacement()):
@@ -56,5 +58,11 @@ def contact_patches(fabric: SolvedFabric) -> dict[tuple[str, str], tuple[float, 
             x, y = (j + 0.5) * fabric.weft.crossed_spacing, (i + 0.5) * fabric.warp.crossed_spacing
             half_x = fabric.warp.contact["low" if over else "high"].half_chord
             half_y = fabric.weft.contact["high" if over else "low"].half_chord
-            found[f"weft_{i + 1}", f"warp_{j + 1}"] = (x - half_x, x + half_x, y - half_y, y + half_y)
+            found[f"weft_{i + 1}", f"warp_{j + 1}"] = (
+                x - half_x,
+                x + half_x,
+                y - half_y,
+                y + half_y,
+            )
+
     return found

@@ -93,7 +93,9 @@ def _evaluated(along, across, parameter) -> tuple[np.ndarray, np.ndarray, np.nda
     sideways = np.einsum("psac,sa->psc", rows, slopes_of_basis)
 
     weight, point = value[..., 3:], value[..., :3] / value[..., 3:]
-    return point, *((each[..., :3] - point * each[..., 3:]) / weight for each in (onwards, sideways))
+    return point, *(
+        (each[..., :3] - point * each[..., 3:]) / weight for each in (onwards, sideways)
+    )
 
 
 def _solved(along, basis: np.ndarray, places: np.ndarray) -> np.ndarray:

@@ -74,11 +74,18 @@ def skin(path: Trajectory, sections: Sequence[Section]) -> Skin:
         abscissae = along.abscissae
         for side, strip in first.strips.items():
             other = second.strips[side].poles
-            rows = [strip.poles] * len(along.poles) if first is second else [strip.poles] * 2 + [other] * 2
+            rows = (
+                [strip.poles] * len(along.poles)
+                if first is second
+                else [strip.poles] * 2 + [other] * 2
+            )
             poles = np.empty((len(along.poles), len(other), 4))
             poles[..., 0] = abscissae[:, None]
             poles[..., 1:] = rows
             poles[..., 2] += along.poles[:, None]
             degree = 1 if len(other) == 2 else 2
-            patches.append(Patch(segment, side, (along.knots, along.degree), (strip.knots, degree), poles))
+            patches.append(
+                Patch(segment, side, (along.knots, along.degree), (strip.knots, degree), poles)
+            )
+
     return Skin(path.direction, path.axis, path.planes, tuple(patches))

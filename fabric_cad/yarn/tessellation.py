@@ -1,15 +1,15 @@
 """A fabric's yarns as triangles: a few tiles, and where each of them stands.
 
-What a yarn is over one crossing, from the middle of the gap before it to the middle of the gap after it, is
-told by five bits, whatever the weave::
+What a yarn is over one crossing, from the middle of the gap before it to the middle of the gap
+after it, is told by five bits, whatever the weave::
 
         gap | crossing, seen along the yarn | gap
     before -+-        it is high or low    -+- after         the yarn itself changes sides there, or floats on
                  left  <- crossed ->  right                  the yarn it crosses changes sides there, or floats on
 
 So each direction has at most 32 tiles. Those in use are evaluated on the exact skin
-(:mod:`~fabric_cad.yarn.skin`), with their exact normals, and are the same for every crossing that has these
-bits: a drawing needs no mesh of the cell, but tiles and places.
+(:mod:`~fabric_cad.yarn.skin`), with their exact normals, and are the same for every crossing that
+has these bits: a drawing needs no mesh of the cell, but tiles and places.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ BITS = ("high", "turns_before", "turns_after", "turns_left", "turns_right")
 class Tiling:
     """Shapes, and where they stand, mm: the tiles of one direction, or the faces at its yarns' ends.
 
-    ``points`` and ``normals`` (tiles, points, 3) are x, y, z from the yarn's axis and the middle of the gap
-    before the crossing, and unit vectors outwards; ``triangles`` (triangles, 3) index the points of any tile,
-    counter-clockwise from outside. Tile ``tile[k]`` stands at ``places[k]`` (3,) and is of the yarn with index
-    ``yarn[k]``.
+    ``points`` and ``normals`` (tiles, points, 3) are x, y, z from the yarn's axis and the middle of
+    the gap before the crossing, and unit vectors outwards; ``triangles`` (triangles, 3) index the
+    points of any tile, counter-clockwise from outside. Tile ``tile[k]`` stands at ``places[k]``
+    (3,) and is of the yarn with index ``yarn[k]``.
     """
 
     points: np.ndarray
@@ -82,14 +82,20 @@ def tile_codes(interlacement: np.ndarray, direction: Direction) -> np.ndarray:
 
 
 def tessellate(fabric: SolvedFabric, grid: Grid | None = None) -> tuple[TiledYarns, ...]:
-    """All yarns of a fabric's cell as tiles, wefts first; ``grid`` says how fine (default: :class:`Grid`)."""
+    """All yarns of a fabric's cell as tiles, wefts first.
+
+    ``grid`` says how fine (default: :class:`Grid`).
+    """
     grid = grid or Grid()
     return tuple(_tiled(fabric, direction, grid) for direction in DIRECTIONS)
 
 
 @dataclass(frozen=True, eq=False)
 class SweptTile:
-    """A yarn over one crossing as it is swept; t (mm) counts from the middle of the gap before it."""
+    """A yarn over one crossing as it is swept.
+
+    T (mm) counts from the middle of the gap before it.
+    """
 
     trajectory: Trajectory
     sections: tuple[Section, ...]
@@ -149,7 +155,9 @@ def _in_plan(direction: Direction, vectors: np.ndarray) -> np.ndarray:
     return vectors if direction is Direction.WEFT else np.ascontiguousarray(vectors[..., [1, 0, 2]])
 
 
-def _turned(direction: Direction, points: np.ndarray, normals: np.ndarray, triangles: np.ndarray) -> Shapes:
+def _turned(
+    direction: Direction, points: np.ndarray, normals: np.ndarray, triangles: np.ndarray
+) -> Shapes:
     """Tiles in plan: x and y exchanged for warps is a reflection, so that their triangles turn round."""
     if direction is Direction.WARP:
         triangles = np.ascontiguousarray(triangles[:, ::-1])

@@ -1,13 +1,14 @@
 """Patches evaluated all at once: points, exact normals and triangles of tiles that share their topology.
 
-A tile's strips, from the section's ASCII drawing in :mod:`~fabric_cad.section.sections`, are grids of points::
+A tile's strips, from the section's ASCII drawing in :mod:`~fabric_cad.section.sections`, are grids
+of points::
 
     across   left_lower | bottom | right_lower          every strip has points of its own where it meets the
              left_upper |  top   | right_upper          next, so that an edge is a crease with two normals
     along    mid-gap -> (chord shorter than the width: lateral zone ->) crossing -> ... -> mid-gap
 
-The number of points does not depend on how many control planes a tile has: 3 or 5 segments share the same
-intervals along, so that high and low tiles, with different chords, have one topology.
+The number of points does not depend on how many control planes a tile has: 3 or 5 segments share
+the same intervals along, so that high and low tiles, with different chords, have one topology.
 """
 
 from __future__ import annotations
@@ -27,19 +28,27 @@ SIDES = (*LOWER, *UPPER, *UPRIGHT)
 """Every side a section may have, in the order of a tile's points."""
 
 _OUTWARDS = {"top": 1, "left": 1, "bottom": -1, "right": -1} | {
-    f"{edge}_{level}": sign for edge in ("left", "right") for level, sign in (("upper", 1), ("lower", -1))
+    f"{edge}_{level}": sign
+    for edge in ("left", "right")
+    for level, sign in (("upper", 1), ("lower", -1))
 }
-"""Sign of (along x across) for it to point out of a yarn; strips run from left to right, upright ones upwards."""
+"""Sign of (along x across) for it to point out of a yarn.
+
+Strips run from left to right, upright ones upwards.
+"""
 
 
 @dataclass(frozen=True)
 class Grid:
     """Intervals of a tile: along its segments, of which there are 3 or 5 and the sums agree, and across its sides.
 
-    ``along`` maps the number of segments, ``across`` that of strips in a side, to intervals one after the other.
+    ``along`` maps the number of segments, ``across`` that of strips in a side, to intervals one
+    after the other.
     """
 
-    along: dict[int, tuple[int, ...]] = field(default_factory=lambda: {3: (4, 6, 4), 5: (3, 2, 4, 2, 3)})
+    along: dict[int, tuple[int, ...]] = field(
+        default_factory=lambda: {3: (4, 6, 4), 5: (3, 2, 4, 2, 3)}
+    )
     across: dict[int, tuple[int, ...]] = field(default_factory=lambda: {1: (12,), 3: (3, 6, 3)})
 
     def intervals(self, sides: Sequence[str]) -> dict[str, int]:
@@ -70,8 +79,9 @@ class Tiles:
     def caps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The faces at both ends: those at the start of every tile, then those at the end of every one.
 
-        Points (2 tiles, points, 3), normals of that shape, and triangles; each is a fan of quadrilaterals
-        between the lower and the upper outline, whose points lie over each other one by one.
+        Points (2 tiles, points, 3), normals of that shape, and triangles; each is a fan of
+        quadrilaterals between the lower and the upper outline, whose points lie over each other one
+        by one.
         """
         lower, upper = (_outline(self.rows, level) for level in (LOWER, UPPER))
         faces = (np.hstack([upper[0], lower[0]]), np.hstack([lower[-1], upper[-1]]))
@@ -128,7 +138,9 @@ def _alike(tiles: Sequence[Sequence[Patch]]) -> dict[tuple, list[_Member]]:
     for number, patches in enumerate(tiles):
         segments = 1 + max(patch.segment for patch in patches)
         for patch in patches:
-            knots = [np.round(_shares(values), 12).tobytes() for values, _ in (patch.along, patch.across)]
+            knots = [
+                np.round(_shares(values), 12).tobytes() for values, _ in (patch.along, patch.across)
+            ]
             key = (patch.side, segments, patch.segment, patch.along[1], patch.across[1], *knots)
             groups.setdefault(key, []).append(_Member(number, segments, patch))
     return groups
@@ -139,7 +151,9 @@ def _surface(patches: Sequence[Patch], along: int, across: int) -> tuple[np.ndar
     (knots_along, degree_along), (knots_across, degree_across) = patches[0].along, patches[0].across
     poles = np.stack([patch.homogeneous for patch in patches])
     rows, row_rates = _even_basis(tuple(_shares(knots_along).tolist()), degree_along, along)
-    columns, column_rates = _even_basis(tuple(_shares(knots_across).tolist()), degree_across, across)
+    columns, column_rates = _even_basis(
+        tuple(_shares(knots_across).tolist()), degree_across, across
+    )
 
     def over_grid(first: np.ndarray, second: np.ndarray) -> np.ndarray:
         tiles, poles_along, _, _ = poles.shape
@@ -167,9 +181,12 @@ def basis(knots: np.ndarray, degree: int, places: np.ndarray) -> tuple[np.ndarra
 
     ``knots`` begin and end with ``degree`` + 1 equal ones, between which the places lie.
     """
-    span = np.clip(np.searchsorted(knots, places, side="right") - 1, degree, len(knots) - degree - 2)
+    span = np.clip(
+        np.searchsorted(knots, places, side="right") - 1, degree, len(knots) - degree - 2
+    )
     values = (np.arange(len(knots) - 1) == span[:, None]).astype(float)
     lower = values
+
     for order in range(1, degree + 1):
         lower, width = values, knots[order:] - knots[:-order]
         share = (places[:, None] - knots[:-order]) / np.where(width > 0, width, 1.0)

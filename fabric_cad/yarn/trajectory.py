@@ -33,10 +33,14 @@ def trajectory(fabric: SolvedFabric, yarn: Yarn, planes: Sequence[ControlPlane])
     """
     crossings = [_crossing(fabric, yarn, number) for number in range(len(yarn.high))]
     pieces = []
+
     for before, after in zip(planes, planes[1:]):
         number = after.crossing if before.crossing is None else before.crossing
         if number is None:
-            raise ValueError("two control planes in the middle of gaps have no crossing between them")
+            raise ValueError(
+                "two control planes in the middle of gaps have no crossing between them"
+            )
+
         pieces.append(crossings[number].piece(before.place, after.place))
 
     axis = (yarn.index + 0.5) * fabric.crossed(yarn.direction).crossed_spacing
@@ -78,6 +82,7 @@ def _crossing(fabric: SolvedFabric, yarn: Yarn, number: int) -> _Crossing:
     turns_left = yarn.high[number - 1] != high
     turns_right = yarn.high[(number + 1) % len(yarn.high)] != high
     bent, straight = [], []
+
     for sign, turns in ((-1, turns_left), (1, turns_right)):
         vertex, reach = centre + sign * contact.offset, contact.half_chord - contact.offset
         end = centre + sign * contact.half_chord
@@ -85,4 +90,5 @@ def _crossing(fabric: SolvedFabric, yarn: Yarn, number: int) -> _Crossing:
         parabola = Quadratic(vertex, level, 0.0, p if turns else 0.0)  # (1), (2)
         bent.append(parabola)
         straight.append(Quadratic(end, parabola.polar(end, end), 2 * parabola.p * sign * reach))
+
     return _Crossing(centre, contact.offset, level, (bent[0], bent[1]), (straight[0], straight[1]))

@@ -1,12 +1,14 @@
 """Volumes of yarns without CAD: integrals of the section's area along the yarn, whole tables at once.
 
-The skin of :mod:`~fabric_cad.yarn.skin` moves a section along the yarn in vertical planes and blends
-two sections strip by strip. The strips of pointed and flat sections end at the same places in every
-section of a yarn, so that an area blends as the heights do, and the cubic smoothstep has the mean
-1/2: between two control planes the volume is their distance times the mean of both areas, exactly.
+The skin of :mod:`~fabric_cad.yarn.skin` moves a section along the yarn in vertical planes and
+blends two sections strip by strip. The strips of pointed and flat sections end at the same places
+in every section of a yarn, so that an area blends as the heights do, and the cubic smoothstep has
+the mean 1/2: between two control planes the volume is their distance times the mean of both areas,
+exactly.
 
-``float_gap`` changes no volume of such sections: the symmetric section (two parabolas, each (b - h)/2 deep)
-and that of a flat contact (one parabola, b - h deep) both have the area c b - c (b - h)/3.
+``float_gap`` changes no volume of such sections: the symmetric section (two parabolas, each (b -
+h)/2 deep) and that of a flat contact (one parabola, b - h deep) both have the area c b - c (b -
+h)/3.
 """
 
 from __future__ import annotations
@@ -46,10 +48,13 @@ class Areas:
 
 
 @singledispatch
-def section_areas(form: Form, columns: Mapping[str, np.ndarray], direction: Direction) -> Areas | None:
+def section_areas(
+    form: Form, columns: Mapping[str, np.ndarray], direction: Direction
+) -> Areas | None:
     """Areas of the sections of a form, from the columns of a solved table whose rows have it.
 
-    None where volumes do not follow from areas: strips of arcs end at other places in other sections.
+    None where volumes do not follow from areas: strips of arcs end at other places in other
+    sections.
     """
     return None
 
@@ -68,14 +73,18 @@ def _(form: Edged, columns: Mapping[str, np.ndarray], direction: Direction) -> A
     return Areas(contact, envelope - columns[f"{direction}_between_q"] * 4 / 3 * half**3)
 
 
-def _above_free_side(columns: Mapping[str, np.ndarray], direction: Direction, plateau: str, kind: str) -> np.ndarray:
+def _above_free_side(
+    columns: Mapping[str, np.ndarray], direction: Direction, plateau: str, kind: str
+) -> np.ndarray:
     """Area between a free parabola q (v - v0)^2 and the envelope, mm2."""
     half = columns[f"{direction}_width_mm"] / 2
     q, v0 = (columns[f"{direction}_{plateau}_{kind}_{name}"] for name in ("q", "v0_mm"))
     return q * ((half - v0) ** 3 + (half + v0) ** 3) / 3
 
 
-def _below_contact(columns: Mapping[str, np.ndarray], direction: Direction, plateau: str) -> np.ndarray:
+def _below_contact(
+    columns: Mapping[str, np.ndarray], direction: Direction, plateau: str
+) -> np.ndarray:
     """Area between the envelope and a contact profile p (v - d_c)^2 on one side of the axis, mm2."""
     # the crossed yarn lies at its other plateau, where its parabola is p
     p = np.abs(columns[_PARABOLA[direction.other, "high" if plateau == "low" else "low"]])
@@ -97,7 +106,9 @@ def yarn_volumes(columns: Mapping[str, Any], weaves: Sequence[Weave]) -> dict[st
 
     NaN in rows with round sections, whose arcs do not blend by areas.
     """
-    volumes: dict[str, np.ndarray] = {direction: np.full(len(weaves), np.nan) for direction in DIRECTIONS}
+    volumes: dict[str, np.ndarray] = {
+        direction: np.full(len(weaves), np.nan) for direction in DIRECTIONS
+    }
     numbers = {name: values for name, values in columns.items() if isinstance(values, np.ndarray)}
 
     for form, rows in rows_by_form(columns["section"]):
@@ -106,6 +117,7 @@ def yarn_volumes(columns: Mapping[str, Any], weaves: Sequence[Weave]) -> dict[st
         for direction in DIRECTIONS:
             if areas := section_areas(form, of_form, direction):
                 volumes[direction][rows] = _volume(of_form, weaves_of_form, areas, direction)
+
     return volumes
 
 

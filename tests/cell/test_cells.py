@@ -72,9 +72,14 @@ def test_the_report_says_where_it_comes_from(made):
     assert report["options"] == asdict(mesh_options(made.fabric))
     row, _ = find_row(shipped_families(), made.name)
     given = {name: values[0] for name, values in row.measured.items() if not np.isnan(values[0])}
-    assert report["measured"].items() >= (given | {"name": made.name, "source": row.sources[0]}).items()
+    assert (
+        report["measured"].items()
+        >= (given | {"name": made.name, "source": row.sources[0]}).items()
+    )
     files = {path.name: path for path in made.folder.iterdir() if path.name != "report.json"}
-    assert report["files"] == {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files.items()}
+    assert report["files"] == {
+        name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files.items()
+    }
 
 
 def test_digests_follow_what_comes_to_the_folder_later(twill32):
@@ -100,7 +105,11 @@ def test_yarns_touch_and_do_not_penetrate(made):
     assert found["thickness_mm"] == pytest.approx(made.fabric.fabric_thickness, rel=1e-9)
     # every crossing is in contact over the whole of its patch
     plan = sum((x1 - x0) * (y1 - y0) for x0, x1, y0, y1 in contact_patches(made.fabric).values())
-    assert plan < found["contact_area_mm2"] < plan * (1 + made.fabric.weft.slope**2 + made.fabric.warp.slope**2)
+    assert (
+        plan
+        < found["contact_area_mm2"]
+        < plan * (1 + made.fabric.weft.slope**2 + made.fabric.warp.slope**2)
+    )
 
 
 def test_elements_are_hexahedra_as_good_as_the_edges_allow(made):
@@ -112,7 +121,10 @@ def test_elements_are_hexahedra_as_good_as_the_edges_allow(made):
     assert mesh["scaled_jacobian_edges_allow"] == allowed
     assert mesh["min_scaled_jacobian"] >= min(0.30, 0.9 * allowed)
     assert mesh["min_opposite_edge_ratio"] > 0.01  # no side is collapsed
-    assert 0 < mesh["min_corner_angle_deg"] < 90 < mesh["max_corner_angle_deg"] < 180 and mesh["max_aspect"] > 1
+    assert (
+        0 < mesh["min_corner_angle_deg"] < 90 < mesh["max_corner_angle_deg"] < 180
+        and mesh["max_aspect"] > 1
+    )
 
 
 def test_volumes_are_those_of_the_model(made):
@@ -131,8 +143,12 @@ def test_volumes_are_those_of_the_model(made):
         solid = solids[swept.yarn.name]
         assert solid.isValid()
         # rational sections do not blend linearly, their weights being close but not the same
-        assert solid.Volume(1e-9) == pytest.approx(expected, rel=1e-6 if fabric.section != "round" else 1e-3)
-    assert made.report["volumes"]["yarn_mm3"] == pytest.approx(sum(s.Volume(1e-9) for s in solids.values()), rel=1e-12)
+        assert solid.Volume(1e-9) == pytest.approx(
+            expected, rel=1e-6 if fabric.section != "round" else 1e-3
+        )
+    assert made.report["volumes"]["yarn_mm3"] == pytest.approx(
+        sum(s.Volume(1e-9) for s in solids.values()), rel=1e-12
+    )
 
 
 def test_step_has_names_colours_and_common_tangents(made):
@@ -162,7 +178,9 @@ def test_step_has_names_colours_and_common_tangents(made):
     solid, checked = shape.Solids()[0], 0
     for edge in solid.Edges():
         start, end = edge.startPoint(), edge.endPoint()
-        faces = [face for face in edge.ancestors(solid, "Face").Faces() if face.geomType() == "BSPLINE"]
+        faces = [
+            face for face in edge.ancestors(solid, "Face").Faces() if face.geomType() == "BSPLINE"
+        ]
         if len(faces) != 2 or abs(getattr(start, along) - getattr(end, along)) > 1e-7:
             continue  # true edges and the seams of strips run along the yarn, end sections are planar
         curve = BRepAdaptor_Curve(edge.wrapped)
@@ -184,7 +202,12 @@ def test_common_volume_by_boolean_operation(twill32):
     from fabric_cad.cad import read_step
 
     solids = read_step(twill32.file("step"))
-    for pair in (("weft_1", "warp_1"), ("weft_1", "warp_5"), ("weft_3", "warp_2"), ("weft_1", "weft_2")):
+    for pair in (
+        ("weft_1", "warp_1"),
+        ("weft_1", "warp_5"),
+        ("weft_3", "warp_2"),
+        ("weft_1", "weft_2"),
+    ):
         first, second = (solids[name] for name in pair)
         assert first.intersect(second).Volume() < 1e-9
 
@@ -193,7 +216,9 @@ def test_inspection_sees_a_yarn_out_of_place(twill32):
     from fabric_cad.cad import inspect_cell, read_step
 
     solids = read_step(twill32.file("step"))
-    down = solids | {"weft_2": solids["weft_2"].moved(z=-1e-4)}  # into the warps below, off those above
+    down = solids | {
+        "weft_2": solids["weft_2"].moved(z=-1e-4)
+    }  # into the warps below, off those above
     found = inspect_cell(down)
     assert found.max_penetration == pytest.approx(1e-4, rel=1e-6)
     assert found.max_contact_gap == pytest.approx(1e-4, rel=1e-6)
@@ -209,11 +234,15 @@ def test_mesh_file_by_another_reader(made):
     assert kinds == {"hexahedron", "quad"}
     hexahedra = np.vstack([block.data for block in mesh.cells if block.type == "hexahedron"])
     assert len(hexahedra) == made.report["mesh"]["hexahedra"]
-    assert len(mesh.points) == len(np.unique(hexahedra)) == made.report["mesh"]["nodes"]  # no orphan
+    assert (
+        len(mesh.points) == len(np.unique(hexahedra)) == made.report["mesh"]["nodes"]
+    )  # no orphan
     names = {yarn.name for yarn in yarns_of(made.fabric.weave.interlacement())}
     kinds = ("contact", "free", "start", "end")
     assert set(mesh.field_data) == names | {f"{name}_{kind}" for name in names for kind in kinds}
-    assert all(dimension == (3 if name in names else 2) for name, (_, dimension) in mesh.field_data.items())
+    assert all(
+        dimension == (3 if name in names else 2) for name, (_, dimension) in mesh.field_data.items()
+    )
 
 
 def test_vtu_by_another_reader(twill32):
@@ -223,10 +252,14 @@ def test_vtu_by_another_reader(twill32):
         *("yarn", "direction", "fibre_axis"),
         *("scaled_jacobian", "opposite_edge_ratio", "least_angle", "aspect"),
     }
-    assert data["scaled_jacobian"].min() == pytest.approx(twill32.report["mesh"]["min_scaled_jacobian"])
+    assert data["scaled_jacobian"].min() == pytest.approx(
+        twill32.report["mesh"]["min_scaled_jacobian"]
+    )
     assert np.linalg.norm(data["fibre_axis"], axis=1) == pytest.approx(1)
     fibre = np.abs(data["fibre_axis"])
-    assert (fibre[data["direction"] == 0, 0] > 0.7).all() and (fibre[data["direction"] == 1, 1] > 0.7).all()
+    assert (fibre[data["direction"] == 0, 0] > 0.7).all() and (
+        fibre[data["direction"] == 1, 1] > 0.7
+    ).all()
     assert set(np.unique(data["yarn"])) == set(range(1, 11))
 
 
@@ -241,7 +274,14 @@ def test_picture_shows_both_directions(made):
 
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
 def test_calculix_reads_the_deck_without_complaint(made):
-    run = subprocess.run(["ccx", made.name], cwd=made.folder, capture_output=True, text=True, timeout=120, check=False)
+    run = subprocess.run(
+        ["ccx", made.name],
+        cwd=made.folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
     for left in made.folder.glob(f"{made.name}.*"):
         if left.suffix in (".cvg", ".dat", ".sta", ".frd", ".12d"):
             left.unlink()
@@ -288,7 +328,9 @@ def test_known_data_give_areal_density_and_fibre_fractions(tmp_path):
     made = make_cell(row, tmp_path, {"size": 0.6})
     volumes = made["volumes"]
     assert volumes["areal_density_g_m2"] == pytest.approx(2 * 0.35 * tex * 1.004)
-    fibre = volumes["areal_density_g_m2"] / density / 1000 * (5 / 0.35) ** 2  # mm of solid fibre x mm2 of cell
+    fibre = (
+        volumes["areal_density_g_m2"] / density / 1000 * (5 / 0.35) ** 2
+    )  # mm of solid fibre x mm2 of cell
     assert volumes["weft_fibre_fraction"] == pytest.approx(fibre / volumes["yarn_mm3"])
     assert volumes["warp_fibre_fraction"] == pytest.approx(volumes["weft_fibre_fraction"])
 

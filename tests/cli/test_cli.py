@@ -20,7 +20,11 @@ from fabric_cad.support.errors import BuildError, OutputError
 
 def run(*arguments, **options):
     return subprocess.run(
-        [sys.executable, "-m", "fabric_cad", *arguments], capture_output=True, text=True, timeout=120, **options
+        [sys.executable, "-m", "fabric_cad", *arguments],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        **options,
     )
 
 
@@ -28,7 +32,16 @@ def test_list_shows_every_row_with_its_model(here, capsys):
     assert main(["list"]) == 0
     shown = capsys.readouterr().out.splitlines()
     rows = {line.split()[0]: line for line in shown[1:]}
-    for name in ("plain", "twill21", "twill22", "twill31", "twill32", "twill43", "satin5", "satin8"):
+    for name in (
+        "plain",
+        "twill21",
+        "twill22",
+        "twill31",
+        "twill32",
+        "twill43",
+        "satin5",
+        "satin8",
+    ):
         assert "3 parameters" in rows[name]
     assert "7 parameters" in rows["plain_unbalanced"]
     assert "pattern 4 wefts x 8 warps" in rows["herringbone22"]
@@ -55,7 +68,10 @@ def test_a_wrong_table_is_not_solved_and_the_others_are(here, capsys):
     assert main(["solve", "-q"]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
-    assert printed.err == "families/twill.csv:2: weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row bad)\n"
+    assert (
+        printed.err
+        == "families/twill.csv:2: weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row bad)\n"
+    )
     assert Path("build/families/plain.csv").exists()
     assert Path("build/families/twill.csv").read_text() == before
 
@@ -64,7 +80,10 @@ def test_a_wrong_table_is_not_solved_and_the_others_are(here, capsys):
     ("arguments", "words"),
     [
         (["cell", "twill23"], "families: no row is called 'twill23'; did you mean twill"),
-        (["cell", "plain", "--families", "nowhere"], "nowhere: no such folder of family tables; 'fabric-cad init'"),
+        (
+            ["cell", "plain", "--families", "nowhere"],
+            "nowhere: no such folder of family tables; 'fabric-cad init'",
+        ),
         (["cell", "plain", "--through", "3"], "through: 3 is odd"),
         (["cell", "plain", "--gap", "3"], "gap: 3 is odd"),
         (["cell", "plain", "--across", "3"], "across: 3 is below 4"),
@@ -79,7 +98,9 @@ def test_bad_requests(here, capsys, arguments, words):
     assert not Path("build").exists() or not any(Path("build").iterdir())
 
 
-@pytest.mark.parametrize("arguments", [[], ["cell"], ["knit"], ["cell", "plain", "--through", "two"]])
+@pytest.mark.parametrize(
+    "arguments", [[], ["cell"], ["knit"], ["cell", "plain", "--through", "two"]]
+)
 def test_bad_usage(here, capsys, arguments):
     with pytest.raises(SystemExit) as stopped:
         main(arguments)
@@ -100,7 +121,8 @@ def test_a_row_of_a_sound_table_is_made_beside_a_wrong_one(here, capsys, monkeyp
     Path("families/twill.csv").write_text(f"{HEADER}\nbad,3,2,0.35,2.9,0.004\n")
     made = []
     monkeypatch.setattr(
-        "fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or small_report()
+        "fabric_cad.cell.pipeline.make_cell",
+        lambda row, *rest: made.append(row.names) or small_report(),
     )
     assert main(["cell", "plain"]) == 0
     assert made == [("plain",)]
@@ -127,7 +149,11 @@ def test_cell_prints_a_table_and_paths_and_is_silent_when_asked(here):
 
 def test_a_reader_that_leaves_a_pipe_is_no_crash(here):
     done = subprocess.run(
-        f"'{sys.executable}' -m fabric_cad list | head -n 1", shell=True, capture_output=True, text=True, timeout=60
+        f"'{sys.executable}' -m fabric_cad list | head -n 1",
+        shell=True,
+        capture_output=True,
+        text=True,
+        timeout=60,
     )
     assert done.stdout.startswith("row")
     assert all(line.startswith("warning: ") for line in done.stderr.splitlines())
@@ -148,7 +174,9 @@ def test_a_missing_system_library_is_named(here, monkeypatch, capsys):
 
     monkeypatch.setattr("fabric_cad.cell.pipeline.make_cell", load)
     assert main(["cell", "plain", "-q"]) == 1
-    assert capsys.readouterr().err.startswith("the system lacks the library libGL.so.1; the README lists")
+    assert capsys.readouterr().err.startswith(
+        "the system lacks the library libGL.so.1; the README lists"
+    )
 
 
 def test_init_keeps_what_is_there(tmp_path, monkeypatch, capsys):
@@ -182,7 +210,9 @@ def result(tmp_path):
 
 
 def content(folder):
-    return {str(p.relative_to(folder)): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()}
+    return {
+        str(p.relative_to(folder)): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()
+    }
 
 
 def test_staged_files_replace_theirs_and_leave_others(result):
@@ -190,7 +220,11 @@ def test_staged_files_replace_theirs_and_leave_others(result):
         (aside / "row.step").write_text("new")
         (aside / "report.json").write_text("{}")
         assert (result / "row.step").read_text() == "earlier"
-    assert content(result.parent) == {"row/row.step": "new", "row/report.json": "{}", "row/my notes.txt": "mine"}
+    assert content(result.parent) == {
+        "row/row.step": "new",
+        "row/report.json": "{}",
+        "row/my notes.txt": "mine",
+    }
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), BuildError("no"), ValueError("x")])
@@ -217,22 +251,31 @@ def test_outputs_in_the_way(tmp_path, result):
 
 
 def test_a_full_device_is_told_as_such(result, monkeypatch):
-    monkeypatch.setattr(staging.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(1, 1, 0))
+    monkeypatch.setattr(
+        staging.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(1, 1, 0)
+    )
     for error in (OSError(28, "No space left on device"), BuildError("gmsh: could not write")):
-        with pytest.raises(OutputError, match="no space left on the device"), staging.staged(result):
+        with (
+            pytest.raises(OutputError, match="no space left on the device"),
+            staging.staged(result),
+        ):
             raise error
 
 
 @pytest.mark.skipif(os.name != "posix", reason="sends a POSIX signal")
 @pytest.mark.parametrize(
-    ("stage", "after"), [("identify", 0.05), ("identify", 0.5), ("identify", 1.0), ("solids", 0.05), ("mesh", 0.05)]
+    ("stage", "after"),
+    [("identify", 0.05), ("identify", 0.5), ("identify", 1.0), ("solids", 0.05), ("mesh", 0.05)],
 )
 def test_ctrl_c_halfway(here, stage, after):
     """Also while CadQuery is loaded, which follows the identification, and VTK, after the mesh."""
     Path("build/plain").mkdir(parents=True)
     Path("build/plain/plain.step").write_text("earlier")
     process = subprocess.Popen(
-        [sys.executable, "-m", "fabric_cad", "cell", "plain"], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-m", "fabric_cad", "cell", "plain"],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
     )
     for line in process.stderr:
         if line.split()[0] == stage:

@@ -17,7 +17,11 @@ def test_what_a_command_reads_is_its_own_frozen_options(command):
     request = read_request(["--out", "there", command.name, *ARGUMENTS.get(command.name, []), "-q"])
 
     assert request.command.name == command.name and type(request.options) is command.options
-    assert (request.options.out, request.options.families, request.quiet) == ("there", "families", True)
+    assert (request.options.out, request.options.families, request.quiet) == (
+        "there",
+        "families",
+        True,
+    )
     with pytest.raises(dataclasses.FrozenInstanceError):
         request.options.out = "elsewhere"
 
@@ -33,7 +37,9 @@ def test_what_is_said_of_a_mesh_is_kept_and_nothing_else(name):
 def test_a_study_lists_its_files_that_are_there(tmp_path, monkeypatch, capsys):
     for name in ("table.csv", "sensitivity.csv", "sensitivity.pdf"):
         (tmp_path / name).write_text("")
-    counts = SimpleNamespace(done=1, refused=0, failed=0, before=0, notes=(), reasons={}, folder=tmp_path)
+    counts = SimpleNamespace(
+        done=1, refused=0, failed=0, before=0, notes=(), reasons={}, folder=tmp_path
+    )
     study = SimpleNamespace(name="widths", design="grid")
     monkeypatch.setattr("fabric_cad.study.read_study", lambda *_: study)
     monkeypatch.setattr("fabric_cad.study.run_study", lambda *_: counts)
@@ -43,4 +49,6 @@ def test_a_study_lists_its_files_that_are_there(tmp_path, monkeypatch, capsys):
 
     assert main(["study", "widths.toml"]) == 0
     listed = [line.strip() for line in capsys.readouterr().out.splitlines()[1:]]
-    assert listed == [str(tmp_path / name) for name in ("table.csv", "sensitivity.csv", "sensitivity.pdf")]
+    assert listed == [
+        str(tmp_path / name) for name in ("table.csv", "sensitivity.csv", "sensitivity.pdf")
+    ]

@@ -50,7 +50,10 @@ def test_a_row_that_fails_does_not_stop_the_others(here, capsys, made):
     printed = capsys.readouterr()
     assert made == ["plain", "twill32"]
     assert printed.out.splitlines()[-1] == "4 rows: 2 done; not: twill22, twill99"
-    assert "twill22: its yarns penetrate" in printed.err and "no row is called 'twill99'" in printed.err
+    assert (
+        "twill22: its yarns penetrate" in printed.err
+        and "no row is called 'twill99'" in printed.err
+    )
     assert main(["cell", "plain", "twill22", "-q"]) == 1  # the highest of the rows'
     assert capsys.readouterr() == ("", "twill22: its yarns penetrate\n")
 
@@ -66,8 +69,12 @@ def test_all_rows_of_all_tables(here, capsys, made):
     assert main(["cell", "--all"]) == 2
     printed = capsys.readouterr()
     assert {"plain", "satin8", "twill43"} <= set(made) and "twill22" not in made
-    assert f"{len(made) + 1} rows: {len(made)} done; not: twill22; 1 tables have errors" in printed.out
-    assert printed.err.count("families/pattern.csv:1: ") == printed.err.count("families/pattern.csv")
+    assert (
+        f"{len(made) + 1} rows: {len(made)} done; not: twill22; 1 tables have errors" in printed.out
+    )
+    assert printed.err.count("families/pattern.csv:1: ") == printed.err.count(
+        "families/pattern.csv"
+    )
 
 
 @pytest.mark.parametrize(
@@ -117,7 +124,11 @@ def test_complaints_that_are_lost_change_nothing(here, stream):
     done = shell(f"{FABRIC_CAD} cell none {stream}")
     assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
     done = shell(f"{FABRIC_CAD} solve {stream}")
-    assert done.returncode == 0 and "twill.csv" in done.stdout and Path("build/families/twill.csv").exists()
+    assert (
+        done.returncode == 0
+        and "twill.csv" in done.stdout
+        and Path("build/families/twill.csv").exists()
+    )
 
 
 @posix
@@ -125,16 +136,22 @@ def test_a_file_never_takes_the_place_of_a_closed_stream(here):
     assert shell(f"{FABRIC_CAD} solve -q >&- 2>&- <&-").returncode == 0
     with_streams = {file.name: file.read_bytes() for file in Path("build/families").iterdir()}
     assert shell(f"{FABRIC_CAD} solve -q").returncode == 0
-    assert {file.name: file.read_bytes() for file in Path("build/families").iterdir()} == with_streams
+    assert {
+        file.name: file.read_bytes() for file in Path("build/families").iterdir()
+    } == with_streams
 
 
 @posix
 def test_a_deleted_current_folder_is_told(here):
     done = shell(
-        f"mkdir gone; cd gone; rmdir ../gone; {FABRIC_CAD} list", PYTHONPATH=str(Path(staging.__file__).parents[1])
+        f"mkdir gone; cd gone; rmdir ../gone; {FABRIC_CAD} list",
+        PYTHONPATH=str(Path(staging.__file__).parents[1]),
     )
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == "the current folder is gone (deleted, or moved away); change to one that is there\n"
+    assert (
+        done.stderr
+        == "the current folder is gone (deleted, or moved away); change to one that is there\n"
+    )
 
 
 @posix
@@ -146,7 +163,9 @@ def test_a_name_that_cannot_be_printed_is_escaped(here):
     assert done.stderr.startswith("f\\xe4milies/twill.csv:2: weft_width_mm")
 
 
-@pytest.mark.parametrize("place", ["fabric_cad.measured.tables.read_families", "pathlib.Path.mkdir"])
+@pytest.mark.parametrize(
+    "place", ["fabric_cad.measured.tables.read_families", "pathlib.Path.mkdir"]
+)
 def test_a_folder_of_another_user_is_told(here, monkeypatch, capsys, place):
     def denied(path, *rest, **more):
         raise PermissionError(13, "Permission denied", str(path))
@@ -154,13 +173,21 @@ def test_a_folder_of_another_user_is_told(here, monkeypatch, capsys, place):
     monkeypatch.setattr(place, denied)
     assert main(["solve", "--out", "results"]) == 1
     told = capsys.readouterr().err
-    assert "Permission denied" in told and ("families" in told or "results" in told) and told.count("\n") == 1
+    assert (
+        "Permission denied" in told
+        and ("families" in told or "results" in told)
+        and told.count("\n") == 1
+    )
 
 
 def test_a_stage_that_fails_on_a_nearly_full_device_says_what_is_left(tmp_path, monkeypatch):
     free = 100_000
-    monkeypatch.setattr(staging.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(1, 1, free))
-    with pytest.raises(OutputError, match=r"OCCT wrote no STEP file; the device of .* has only 0.1 MB left"):
+    monkeypatch.setattr(
+        staging.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(1, 1, free)
+    )
+    with pytest.raises(
+        OutputError, match=r"OCCT wrote no STEP file; the device of .* has only 0.1 MB left"
+    ):
         with staging.output_errors(tmp_path):
             raise BuildError("OCCT wrote no STEP file")
     for error in (InputError("a row"), BuildError("x")):

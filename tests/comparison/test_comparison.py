@@ -111,7 +111,9 @@ def test_yarns_are_closed_and_periodic(model, twill):
         edge = np.array([-0.5, 0.0, 0.5]) * solved.width
         t = np.linspace(0, len(yarn.high) * solved.crossed_spacing, 2001)
         bottom, top = model.heights(twill, yarn, t, edge)
-        assert top[:, 1] - bottom[:, 1] == pytest.approx(solved.thickness, abs=3e-2 * solved.thickness)
+        assert top[:, 1] - bottom[:, 1] == pytest.approx(
+            solved.thickness, abs=3e-2 * solved.thickness
+        )
         assert top[:, ::2] == pytest.approx(bottom[:, ::2], abs=1e-9)
         assert top[0] == pytest.approx(top[-1], abs=1e-12)
         assert np.max(np.abs(np.diff(top, axis=0))) < 0.05 * solved.thickness  # no jumps
@@ -122,7 +124,9 @@ def section_area(section, solved):
     if section is elliptic:
         return np.pi * b * c / 4
     radius = lens_radius(solved)
-    return 2 * (radius**2 * np.arcsin(c / (2 * radius)) - c / 2 * (radius - b / 2))  # two circular segments
+    return 2 * (
+        radius**2 * np.arcsin(c / (2 * radius)) - c / 2 * (radius - b / 2)
+    )  # two circular segments
 
 
 @pytest.mark.parametrize("section", (elliptic, lenticular), ids=lambda section: section.__name__)
@@ -131,7 +135,9 @@ def test_a_yarns_volume_is_its_section_times_its_projected_length(section, fall,
     model = Model("", constant_section(fall, section))
     x, y = unbalanced.period
     wefts, warps = unbalanced.weave.wefts, unbalanced.weave.warps
-    expected = wefts * x * section_area(section, unbalanced.weft) + warps * y * section_area(section, unbalanced.warp)
+    expected = wefts * x * section_area(section, unbalanced.weft) + warps * y * section_area(
+        section, unbalanced.warp
+    )
     assert yarn_volume(unbalanced, model) == pytest.approx(expected, rel=1e-11)
 
 
@@ -151,7 +157,10 @@ def test_two_straight_lenses_touch_at_one_point(plain):
 
 def test_yarns_in_one_plane_overlap_in_steinmetz_solids(plain):
     # two elliptic cylinders at right angles share 16/3 r^3 (Steinmetz), scaled by b / c in height
-    model = Model("in one plane", constant_section(lambda u, solved, _: solved.amplitude / 2 + 0 * u, elliptic))
+    model = Model(
+        "in one plane",
+        constant_section(lambda u, solved, _: solved.amplitude / 2 + 0 * u, elliptic),
+    )
     b, c = plain.weft.thickness, plain.weft.width
     found = measure(plain, model)
     assert found.overlap_volume == pytest.approx(4 * 16 / 3 * (c / 2) ** 2 * b / 2, rel=1e-3)
@@ -161,7 +170,12 @@ def test_yarns_in_one_plane_overlap_in_steinmetz_solids(plain):
 def test_bars_penetrate_as_deep_as_a_chord_cuts_an_ellipse(plain):
     # over one half width: A u / a - b/2 (1 - sqrt(1 - (2 u / c)^2)) is largest where the ellipse has the bar's
     # slope; both yarns of a crossing in a plain weave do so at once
-    a, b, c, rise = plain.weft.crossed_spacing, plain.weft.thickness, plain.weft.width, plain.weft.amplitude
+    a, b, c, rise = (
+        plain.weft.crossed_spacing,
+        plain.weft.thickness,
+        plain.weft.width,
+        plain.weft.amplitude,
+    )
     steep = rise / a * c / b
     u = c / 2 * steep / np.sqrt(1 + steep**2)
     deepest = 2 * (rise * u / a - b / 2 * (1 - np.sqrt(1 - (2 * u / c) ** 2)))
@@ -179,7 +193,9 @@ def test_an_arc_of_the_lens_radius_touches_the_lens_along_the_arc(plain):
 def test_a_constant_section_penetrates_or_leaves_voids(model, twill):
     found = measure(twill, model)
     assert found.overlap_percent > 0.5 or found.mean_void > 0.1 * twill.weft.thickness
-    assert found.mean_void > 0.05 * twill.weft.thickness  # no section is flat where the crossed yarn floats
+    assert (
+        found.mean_void > 0.05 * twill.weft.thickness
+    )  # no section is flat where the crossed yarn floats
     assert found.contact_percent < 20
 
 
@@ -191,13 +207,17 @@ def test_the_grid_is_fine_enough(model, weave, request):
     small = 1e-6 * fabric.fabric_thickness
     assert usual.max_penetration == pytest.approx(fine.max_penetration, rel=2e-3, abs=small)
     for name in ("overlap_volume", "void_volume"):
-        assert getattr(usual, name) == pytest.approx(getattr(fine, name), rel=1e-3, abs=small * fine.crossing_area)
+        assert getattr(usual, name) == pytest.approx(
+            getattr(fine, name), rel=1e-3, abs=small * fine.crossing_area
+        )
     assert usual.contact_percent == pytest.approx(fine.contact_percent, abs=1.0)
 
 
 def test_what_cannot_be_made_is_refused_with_its_numbers(twill):
     steep = replace(twill, weft=replace(twill.weft, amplitude=1.2))
-    with pytest.raises(BuildError, match=r"cannot rise by 1\.2 mm over a spacing of 2\.857 mm.*have room for 0\.5"):
+    with pytest.raises(
+        BuildError, match=r"cannot rise by 1\.2 mm over a spacing of 2\.857 mm.*have room for 0\.5"
+    ):
         measure(steep, MODELS[2])
     thick = replace(twill, warp=replace(twill.warp, thickness=2.5))
     with pytest.raises(BuildError, match=r"no lens is 2\.5 mm thick and 2\.4 mm wide"):
@@ -213,7 +233,11 @@ def test_the_tolerance_is_of_the_thinner_yarn(unbalanced):
 def test_the_table_has_a_line_for_every_model(twill):
     results = compare(twill, points=16)
     lines = comparison_table(results).splitlines()
-    assert [line[:24].strip() for line in lines[2:]] == [each.model for each in results] == [m.title for m in MODELS]
+    assert (
+        [line[:24].strip() for line in lines[2:]]
+        == [each.model for each in results]
+        == [m.title for m in MODELS]
+    )
     assert len({len(line) for line in lines}) == 1
 
 
@@ -231,5 +255,7 @@ def test_comparing_loads_no_cad_and_no_pictures():
     absent = ("cadquery", "OCP", "gmsh", "scipy", "matplotlib")
     code = f"import sys, fabric_cad.comparison; print([name for name in {absent!r} if name in sys.modules])"
     place = Path(fabric_cad.__file__).parents[1]
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=place, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=place, check=True
+    )
     assert done.stdout.strip() == "[]"

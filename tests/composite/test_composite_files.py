@@ -50,14 +50,19 @@ def test_the_report_tells_of_the_mesh(folder, mesh):
     report = json.loads((folder / "composite.json").read_text())
     volumes = hexahedra_volumes(mesh.points[mesh.hexahedra])
     box = np.prod(report["box_mm"])
-    assert report["hexahedra"] == len(mesh.hexahedra) and report["other_elements"] == mesh.other_elements == 0
+    assert (
+        report["hexahedra"] == len(mesh.hexahedra)
+        and report["other_elements"] == mesh.other_elements == 0
+    )
     assert report["margin_mm"] == 0.05
     assert abs(report["volume_error"]) < 1e-12 and volumes.sum() == pytest.approx(box, rel=1e-12)
     yarns = volumes[mesh.body < 4].sum()
     assert report["yarn_volume_fraction"] == pytest.approx(yarns / box)
     assert report["min_scaled_jacobian"].keys() == {"matrix", "yarns"}
     assert report["closed_wedge_mm"] < 1e-9
-    assert report["fibre_volume_fraction"] == pytest.approx(report["yarn_volume_fraction"] * 0.65, rel=0.2)
+    assert report["fibre_volume_fraction"] == pytest.approx(
+        report["yarn_volume_fraction"] * 0.65, rel=0.2
+    )
 
 
 def test_every_report_of_the_folder_has_the_digests(folder):
@@ -78,13 +83,22 @@ def test_the_mesh_file_names_bodies_faces_and_interfaces(folder, mesh):
 
     with gmsh_session():
         gmsh.open(str(folder / "composite.msh"))
-        names = {gmsh.model.getPhysicalName(*group): group for group in gmsh.model.getPhysicalGroups()}
+        names = {
+            gmsh.model.getPhysicalName(*group): group for group in gmsh.model.getPhysicalGroups()
+        }
         counts = {}
         for name, (dimension, group) in names.items():
             entities = gmsh.model.getEntitiesForPhysicalGroup(dimension, group)
-            counts[name] = sum(len(gmsh.model.mesh.getElements(dimension, each)[1][0]) for each in entities)
+            counts[name] = sum(
+                len(gmsh.model.mesh.getElements(dimension, each)[1][0]) for each in entities
+            )
     kinds = ("matrix", "contact", "start", "end")
-    assert names.keys() == {*YARNS, "matrix", *BOX_FACES, *(f"{yarn}_{kind}" for yarn in YARNS for kind in kinds)}
+    assert names.keys() == {
+        *YARNS,
+        "matrix",
+        *BOX_FACES,
+        *(f"{yarn}_{kind}" for yarn in YARNS for kind in kinds),
+    }
     assert counts["z_min"] == counts["z_max"] == (2 * (6 + 4)) ** 2
     assert counts["x_min"] == counts["x_max"] and counts["y_min"] == counts["y_max"]
     assert counts["weft_1_contact"] == 2 * 6 * 6
@@ -99,8 +113,12 @@ def test_the_solids_are_those_of_the_report(folder):
     assert list(solids) == [*YARNS, "matrix"]
     box = np.prod(report["box_mm"])
     assert solids["matrix"].Volume(1e-9) == pytest.approx(report["solids"]["matrix_mm3"])
-    assert report["solids"]["matrix_mm3"] + report["solids"]["yarns_mm3"] == pytest.approx(box, rel=1e-9)
-    assert report["yarn_volume_fraction"] == pytest.approx(report["solids"]["yarns_mm3"] / box, rel=0.03)
+    assert report["solids"]["matrix_mm3"] + report["solids"]["yarns_mm3"] == pytest.approx(
+        box, rel=1e-9
+    )
+    assert report["yarn_volume_fraction"] == pytest.approx(
+        report["solids"]["yarns_mm3"] / box, rel=0.03
+    )
 
 
 def test_the_deck_has_the_same_numbers_sets_and_surfaces(folder, mesh):
@@ -122,7 +140,9 @@ def test_surfaces_of_bonded_bodies_are_faces_of_their_own_elements(mesh):
     for surface, faces in element_faces(mesh).items():
         assert (mesh.body[faces.elements] == mesh.bodies.index(surface.body)).all()
         own, quads = face_quads(mesh, faces), mesh.surfaces[surface]
-        assert np.array_equal(np.unique(np.sort(own, axis=1), axis=0), np.unique(np.sort(quads, axis=1), axis=0))
+        assert np.array_equal(
+            np.unique(np.sort(own, axis=1), axis=0), np.unique(np.sort(quads, axis=1), axis=0)
+        )
     starts = {"weft_1_start": mesh.quads_of(mesh.yarns[0], SurfaceKind.START)}
     assert len(outer_faces(mesh, starts)["weft_1_start"]) == len(starts["weft_1_start"])
 
@@ -134,16 +154,24 @@ def test_the_vtu_has_body_fibre_and_quality(folder, mesh):
     body = grid.cell_data["body"]
     assert np.array_equal(body, np.where(mesh.body == 4, 0, mesh.body + 1))
     assert list(grid.field_data["yarn_names"]) == YARNS
-    assert np.linalg.norm(grid.cell_data["fibre_axis"], axis=1) == pytest.approx(np.where(body, 1.0, 0.0))
+    assert np.linalg.norm(grid.cell_data["fibre_axis"], axis=1) == pytest.approx(
+        np.where(body, 1.0, 0.0)
+    )
     fraction = grid.cell_data["fibre_fraction"]
-    assert (fraction[body == 0] == 0).all() and (fraction[body > 0] > 0.3).all() and fraction.max() < 0.9069
+    assert (
+        (fraction[body == 0] == 0).all()
+        and (fraction[body > 0] > 0.3).all()
+        and fraction.max() < 0.9069
+    )
     assert grid.cell_data["scaled_jacobian"].min() > 0.3
 
 
 def test_the_picture_shows_yarns_and_matrix(folder):
     from PIL import Image
 
-    colours = np.asarray(Image.open(folder / "composite.png").convert("RGB")).reshape(-1, 3).astype(int)
+    colours = (
+        np.asarray(Image.open(folder / "composite.png").convert("RGB")).reshape(-1, 3).astype(int)
+    )
     shown = colours[(colours < 250).any(axis=1)]
     assert len(shown) > 0.2 * len(colours)
     orange = (shown[:, 0] > 200) & (shown[:, 2] < 80)  # a weft where the matrix is cut away
@@ -163,7 +191,17 @@ def test_the_picture_shows_yarns_and_matrix(folder):
 )
 def test_bad_input(tmp_path, capsys, arguments, status, words):
     try:
-        got = main(["composite", "plain", "--families", str(shipped_families()), "--out", str(tmp_path), *arguments])
+        got = main(
+            [
+                "composite",
+                "plain",
+                "--families",
+                str(shipped_families()),
+                "--out",
+                str(tmp_path),
+                *arguments,
+            ]
+        )
     except SystemExit as error:
         got = error.code
     assert got == status and words in capsys.readouterr().err
@@ -182,7 +220,9 @@ def test_a_mesh_that_no_solver_takes_is_not_delivered(mesh):
     volumes = hexahedra_volumes(mesh.points[mesh.hexahedra])
     cell = CompositeCell(mesh, {}, np.array([volumes.sum(), 1.0, 1.0]), 0.05, 0.0, 0.0)
     good, none = np.full(len(volumes), 0.9), np.zeros(len(volumes))
-    assert composite_report(fabric, USUAL, cell, mesh, Figures(volumes, good, none))["row"] == "plain"
+    assert (
+        composite_report(fabric, USUAL, cell, mesh, Figures(volumes, good, none))["row"] == "plain"
+    )
     folded = np.where(np.arange(len(good)) == 3, -0.1, good)
     with pytest.raises(BuildError, match="plain: 1 hexahedra .* not above 0.0001, -0.1 at least"):
         composite_report(fabric, USUAL, cell, mesh, Figures(volumes, folded, none))

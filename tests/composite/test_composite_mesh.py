@@ -23,7 +23,11 @@ from fabric_cad.support.errors import InputError
 from fabric_cad.weave.bodies import Surface, SurfaceKind
 from fabric_cad.weave.weaves import yarns_of
 
-FABRICS = {fabric.name: fabric for family in read_families(shipped_families()).values() for fabric in identify(family)}
+FABRICS = {
+    fabric.name: fabric
+    for family in read_families(shipped_families()).values()
+    for fabric in identify(family)
+}
 SMALL = [name for name, fabric in FABRICS.items() if fabric.weave.wefts <= 4]
 
 
@@ -31,7 +35,9 @@ SMALL = [name for name, fabric in FABRICS.items() if fabric.weave.wefts <= 4]
 def coarse(name, **options):
     """The composite of a shipped row with 4 columns a yarn and 2 layers of matrix."""
     fabric = FABRICS[name]
-    return mesh_composite(fabric, composite_mesh_options(fabric, across=4), CompositeOptions(layers=2, **options))
+    return mesh_composite(
+        fabric, composite_mesh_options(fabric, across=4), CompositeOptions(layers=2, **options)
+    )
 
 
 def random_composite(kind, seed):
@@ -40,7 +46,9 @@ def random_composite(kind, seed):
     try:
         fabric = identify(table(family, row))["random"]
         options = composite_mesh_options(fabric, across=4)
-        return fabric, mesh_composite(fabric, options, CompositeOptions(layers=1, margin=Margin(0.1)))
+        return fabric, mesh_composite(
+            fabric, options, CompositeOptions(layers=1, margin=Margin(0.1))
+        )
     except InputError as error:
         pytest.skip(str(error))
 
@@ -71,14 +79,18 @@ def test_yarns_keep_their_hexahedra(name):
     """Volumes of the yarns' elements are those of the yarns meshed alone, but for the wedges closed."""
     fabric, cell = FABRICS[name], coarse(name)
     options = composite_mesh_options(fabric, across=4)
-    plans = plan_yarns(fabric, yarns_of(fabric.weave.interlacement()), options, gap_shares(fabric, options))
+    plans = plan_yarns(
+        fabric, yarns_of(fabric.weave.interlacement()), options, gap_shares(fabric, options)
+    )
     alone = closed_mesh(fabric, plans)
     ours = ~cell.in_matrix
     assert np.array_equal(cell.mesh.body[ours], alone.body)
     volumes = hexahedra_volumes(alone.points[alone.hexahedra])
     kept = hexahedra_volumes(cell.mesh.points[cell.mesh.hexahedra[ours]])
     areas = np.ptp(alone.points[alone.hexahedra], axis=1)[:, :2].prod(axis=1)
-    assert (np.abs(kept - volumes) <= 2 * areas * cell.closed_wedge / 2 + 1e-12 * volumes.max()).all()
+    assert (
+        np.abs(kept - volumes) <= 2 * areas * cell.closed_wedge / 2 + 1e-12 * volumes.max()
+    ).all()
     if cell.closed_wedge < 1e-9:
         assert kept == pytest.approx(volumes, rel=1e-9)
     assert cell.mesh.fibre_axes()[ours] == pytest.approx(alone.fibre_axes(), abs=0.02)
@@ -92,7 +104,9 @@ def test_interfaces_lie_between_what_their_names_say(name, contact):
     mesh = cell.mesh
     owners = Counter()
     bodies_of = {}
-    for body, faces in zip(mesh.body.repeat(6), np.sort(mesh.hexahedra[:, FACES].reshape(-1, 4), axis=1).tolist()):
+    for body, faces in zip(
+        mesh.body.repeat(6), np.sort(mesh.hexahedra[:, FACES].reshape(-1, 4), axis=1).tolist()
+    ):
         bodies_of.setdefault(tuple(faces), []).append(int(body))
 
     matrix = mesh.bodies.index(MATRIX)
@@ -108,7 +122,9 @@ def test_interfaces_lie_between_what_their_names_say(name, contact):
                     assert matrix not in found and len(found) == (2 if contact == "bonded" else 1)
                 else:
                     assert found == [number]
-    assert owners[SurfaceKind.CONTACT] and owners[SurfaceKind.MATRIX] and not owners[SurfaceKind.FREE]
+    assert (
+        owners[SurfaceKind.CONTACT] and owners[SurfaceKind.MATRIX] and not owners[SurfaceKind.FREE]
+    )
     between = sum(len(set(found)) == 2 for found in bodies_of.values())
     contacts = owners[SurfaceKind.CONTACT] // 2 if contact == "bonded" else 0
     assert between == owners[SurfaceKind.MATRIX] + contacts
@@ -127,10 +143,14 @@ def test_double_contact_has_nodes_of_its_own_inside_the_patches(name):
     crossings = FABRICS[name].weave.interlacement().size
     quads = contacts / 2 / crossings
     sides = np.sqrt(quads)
-    assert len(cell.mesh.points) - len(bonded.mesh.points) == pytest.approx(crossings * (sides - 1) ** 2)
+    assert len(cell.mesh.points) - len(bonded.mesh.points) == pytest.approx(
+        crossings * (sides - 1) ** 2
+    )
 
 
-@pytest.mark.parametrize("name", ["plain", "twill22", "twill32", "satin5", "basket22", "twill22_offsets", "crowfoot4"])
+@pytest.mark.parametrize(
+    "name", ["plain", "twill22", "twill32", "satin5", "basket22", "twill22_offsets", "crowfoot4"]
+)
 def test_the_matrix_of_lenticular_rows_is_well_shaped(name):
     """At least 0.6 at the default mesh."""
     cell = mesh_composite(FABRICS[name], composite_mesh_options(FABRICS[name]))
@@ -150,7 +170,9 @@ def test_strips_beside_flat_sides_in_narrow_gaps_do_not_fold(seed):
     """Half gaps of 0.13 to 0.35 of the thickness; strips that took 0.65 of them had -0.03 (seed 70)."""
     family, row = DRAWS["standard"](np.random.default_rng(seed), "narrow")
     fabric = identify(table(family, row))["narrow"]
-    cell = mesh_composite(fabric, composite_mesh_options(fabric, across=4), CompositeOptions(layers=1))
+    cell = mesh_composite(
+        fabric, composite_mesh_options(fabric, across=4), CompositeOptions(layers=1)
+    )
     quality = hexahedra_quality(cell.mesh.points, cell.mesh.hexahedra[cell.in_matrix])
     assert quality.scaled_jacobian.min() >= 0.08
 
@@ -180,7 +202,8 @@ def test_margin_layers_and_grading():
 
 
 @pytest.mark.parametrize(
-    ("text", "margin"), [("5%", Margin(0.05)), (" 2.5 % ", Margin(0.025)), ("0.04", Margin(0.04, False))]
+    ("text", "margin"),
+    [("5%", Margin(0.05)), (" 2.5 % ", Margin(0.025)), ("0.04", Margin(0.04, False))],
 )
 def test_a_margin_is_read(text, margin):
     assert Margin.read(text).length(0.5) == pytest.approx(margin.length(0.5))
@@ -202,7 +225,9 @@ def test_a_margin_is_read(text, margin):
 def test_options_that_make_no_matrix_are_refused(options, words):
     fabric = FABRICS["plain"]
     with pytest.raises(InputError, match=words):
-        mesh_composite(fabric, composite_mesh_options(fabric, across=4), CompositeOptions(**options))
+        mesh_composite(
+            fabric, composite_mesh_options(fabric, across=4), CompositeOptions(**options)
+        )
 
 
 @pytest.mark.parametrize("text", ["", "five", "5 percent", "nan", "inf%"])
@@ -235,7 +260,8 @@ def test_the_mesh_that_gmsh_makes_serves_as_well(tmp_path):
     mesh_cell(tmp_path / "cell.step", fabric, options, tmp_path / "cell.msh")
     plans = plan_yarns(fabric, yarns_of(fabric.weave.interlacement()), options)
     ours, theirs = (
-        composite_cell(yarns, fabric, plans) for yarns in (closed_mesh(fabric, plans), read_mesh(tmp_path / "cell.msh"))
+        composite_cell(yarns, fabric, plans)
+        for yarns in (closed_mesh(fabric, plans), read_mesh(tmp_path / "cell.msh"))
     )
     assert theirs.mesh.hexahedra.shape == ours.mesh.hexahedra.shape
     volumes = [hexahedra_volumes(cell.mesh.points[cell.mesh.hexahedra]) for cell in (ours, theirs)]

@@ -58,14 +58,23 @@ def test_a_yarns_own_constants_need_no_fibre(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (MATRIX, r"toml: fibre: there is no table \[fibre\], nor are the yarn's own constants given"),
+        (
+            MATRIX,
+            r"toml: fibre: there is no table \[fibre\], nor are the yarn's own constants given",
+        ),
         (FIBRE, r"toml: matrix: there is no table \[matrix\]"),
         (FIBRE.replace("G23_MPa = 30e3\n", "") + MATRIX, r"G23_MPa: is missing in \[fibre\]"),
         (FIBRE + "[matrix]\nE_MPa = 3400\n", r"nu: is missing in \[matrix\]"),
         (FIBRE + MATRIX.replace("0.35", "0.5"), r":9: nu: 0.5 is not between -1 and 0.5"),
         (FIBRE.replace("73e3", "-1", 1) + MATRIX, r":2: E1_MPa: -1 is not a number above 0"),
-        (FIBRE.replace("E1_MPa", "E11_MPa") + MATRIX, r":2: E11_MPa: no such key in \[fibre\]; did you mean E1_MPa\?"),
-        (FIBRE + MATRIX + "density_g_cm3 = 'light'\n", r":10: density_g_cm3: 'light' is not a number above 0"),
+        (
+            FIBRE.replace("E1_MPa", "E11_MPa") + MATRIX,
+            r":2: E11_MPa: no such key in \[fibre\]; did you mean E1_MPa\?",
+        ),
+        (
+            FIBRE + MATRIX + "density_g_cm3 = 'light'\n",
+            r":10: density_g_cm3: 'light' is not a number above 0",
+        ),
         (
             FIBRE + MATRIX + "[yarn]\nfibre_fraction = 0.92\n",
             r":11: fibre_fraction: 0.92 is not above 0 and up to 0.9069",
@@ -74,7 +83,10 @@ def test_a_yarns_own_constants_need_no_fibre(tmp_path):
             FIBRE + MATRIX + "[yarn]\nfibre_weight_fraction = 60\n",
             r":11: fibre_weight_fraction: 60 is not above 0 and up to 1",
         ),
-        (MATRIX + YARN.replace("nu23 = 0.29\n", ""), r"nu23: is missing: the yarn's own constants are"),
+        (
+            MATRIX + YARN.replace("nu23 = 0.29\n", ""),
+            r"nu23: is missing: the yarn's own constants are",
+        ),
         (
             FIBRE.replace("G23_MPa = 30e3", "G23_MPa = 18e3") + MATRIX,
             r":5: G23_MPa: 18000 is not above E2_MPa / 4 = 18250",
@@ -101,9 +113,14 @@ def test_what_is_wrong_is_named_with_its_place(tmp_path, text, said):
 
 @given(st.floats(0.1, 10), st.floats(-0.99, 0.99), st.floats(0.05, 5))
 def test_a_fibre_is_read_where_its_compliance_is_positive_definite(tmp_path_factory, e2, nu12, g23):
-    text = f"[fibre]\nE1_MPa = 1.0\nE2_MPa = {e2!r}\nG12_MPa = 1.0\nG23_MPa = {g23!r}\nnu12 = {nu12!r}\n" + MATRIX
+    text = (
+        f"[fibre]\nE1_MPa = 1.0\nE2_MPa = {e2!r}\nG12_MPa = 1.0\nG23_MPa = {g23!r}\nnu12 = {nu12!r}\n"
+        + MATRIX
+    )
     nu23 = e2 / (2 * g23) - 1
-    compliance = np.array([[1, -nu12, -nu12], [-nu12, 1 / e2, -nu23 / e2], [-nu12, -nu23 / e2, 1 / e2]])
+    compliance = np.array(
+        [[1, -nu12, -nu12], [-nu12, 1 / e2, -nu23 / e2], [-nu12, -nu23 / e2, 1 / e2]]
+    )
     least = np.linalg.eigvalsh(compliance).min()
     try:
         read(tmp_path_factory.getbasetemp(), text)
@@ -114,5 +131,8 @@ def test_a_fibre_is_read_where_its_compliance_is_positive_definite(tmp_path_fact
 
 
 def test_closest_packing_is_that_of_a_hexagon_of_touching_circles():
-    hexagon, circles = 6 * math.sqrt(3) / 4, 3 * math.pi * 0.5**2  # side 1: one whole circle, six thirds
+    hexagon, circles = (
+        6 * math.sqrt(3) / 4,
+        3 * math.pi * 0.5**2,
+    )  # side 1: one whole circle, six thirds
     assert pytest.approx(circles / hexagon) == CLOSEST_PACKING

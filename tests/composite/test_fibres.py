@@ -41,7 +41,9 @@ def quadrature(swept):
 def test_areas_add_up_to_volumes_and_slopes_to_lengths(family):
     rows = read_families(shipped_families())[family]
     solved = identify(rows)
-    volumes = yarn_volumes({name: np.asarray(column) for name, column in solved.columns.items()}, rows.weaves)
+    volumes = yarn_volumes(
+        {name: np.asarray(column) for name, column in solved.columns.items()}, rows.weaves
+    )
     for number, fabric in enumerate(solved):
         found, lengths, extents = (dict.fromkeys(volumes, 0.0) for _ in range(3))
         for swept in swept_yarns(fabric):
@@ -85,7 +87,9 @@ def test_fibre_is_neither_lost_nor_found_along_a_yarn(tmp_path):
 
 def test_of_a_commingled_yarn_a_share_is_fibre(tmp_path):
     row = table(tmp_path, "weft_linear_density_tex", "800")
-    sections = fibre_sections(row, Constituents(MATRIX, GLASS, GivenYarn(fibre_weight_fraction=0.6)))
+    sections = fibre_sections(
+        row, Constituents(MATRIX, GLASS, GivenYarn(fibre_weight_fraction=0.6))
+    )
     assert sections.areas["weft"] == pytest.approx(0.6 * 0.32)
 
 
@@ -95,7 +99,9 @@ def test_every_shipped_row_has_constituents_and_room_for_its_fibres(family):
     solved = identify(rows)
     for name in rows.names:
         sections = fibre_sections(rows[name], read_constituents(shipped_families(), name))
-        for swept in swept_yarns(solved[name])[:: solved[name].weave.wefts]:  # the first of either direction
+        for swept in swept_yarns(solved[name])[
+            :: solved[name].weave.wefts
+        ]:  # the first of either direction
             fraction = fibre_fractions(swept, sections, np.array([0.1]))
             assert 0.1 < fraction[0] < 0.9
 
@@ -105,12 +111,18 @@ def test_the_rows_own_fibre_density_goes_before_the_constituents(tmp_path):
     assert fibre_sections(row, Constituents(MATRIX, GLASS)).areas == {"weft": 0.4, "warp": 0.4}
 
 
-def test_a_given_fraction_holds_all_along_and_before_a_linear_density_only_where_given_for_the_row(tmp_path):
+def test_a_given_fraction_holds_all_along_and_before_a_linear_density_only_where_given_for_the_row(
+    tmp_path,
+):
     row = table(tmp_path, "weft_linear_density_tex", "800")
     swept = swept_yarns(identify(row)["woven"])[0]
-    general, own = (Constituents(MATRIX, GLASS, GivenYarn(0.6, own_fraction=own)) for own in (False, True))
+    general, own = (
+        Constituents(MATRIX, GLASS, GivenYarn(0.6, own_fraction=own)) for own in (False, True)
+    )
     assert fibre_sections(row, general).areas["weft"] == pytest.approx(0.32)
-    np.testing.assert_array_equal(fibre_fractions(swept, fibre_sections(row, own), np.array([1.0, 2.0])), 0.6)
+    np.testing.assert_array_equal(
+        fibre_fractions(swept, fibre_sections(row, own), np.array([1.0, 2.0])), 0.6
+    )
 
 
 def test_too_much_fibre_is_refused_with_yarn_place_and_number(tmp_path):
@@ -120,7 +132,9 @@ def test_too_much_fibre_is_refused_with_yarn_place_and_number(tmp_path):
     with pytest.raises(InputError) as error:
         fibre_fractions(swept, sections, np.array([1.0]))
     told = str(error.value)
-    assert told.startswith(f"{tmp_path / 'plain.csv'}:2: weft_linear_density_tex: weft_1: its fibres would take ")
+    assert told.startswith(
+        f"{tmp_path / 'plain.csv'}:2: weft_linear_density_tex: weft_1: its fibres would take "
+    )
     assert f"above {CLOSEST_PACKING:.4f}" in told
     assert "mm along it" in told
 
@@ -129,10 +143,16 @@ def test_too_much_fibre_is_refused_with_yarn_place_and_number(tmp_path):
     ("extra", "values", "said"),
     [
         ("notes", "", "fibre_fraction: is missing, and the row gives no linear density"),
-        ("weft_linear_density_tex", "800", "density_g_cm3: is missing: the fibre fraction is to follow"),
+        (
+            "weft_linear_density_tex",
+            "800",
+            "density_g_cm3: is missing: the fibre fraction is to follow",
+        ),
     ],
 )
 def test_what_is_missing_is_told(tmp_path, extra, values, said):
     light = Fibre(73e3, 73e3, 30e3, 30e3, 0.2)
     with pytest.raises(InputError, match=said):
-        fibre_sections(table(tmp_path, extra, values), Constituents(MATRIX, light, path="composite.toml"))
+        fibre_sections(
+            table(tmp_path, extra, values), Constituents(MATRIX, light, path="composite.toml")
+        )

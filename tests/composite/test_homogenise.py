@@ -26,7 +26,9 @@ from fabric_cad.support.errors import BuildError, SolverError
 
 YARN = TransverselyIsotropic(151e3, 10.1e3, 5.7e3, 0.24, 0.5)
 RESIN = isotropic(3500.0, 0.35)
-CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+CORNERS = np.array(
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+)
 
 
 def box(counts, size, periodic=(True, True, True), wobble=0.0):
@@ -35,9 +37,13 @@ def box(counts, size, periodic=(True, True, True), wobble=0.0):
     number = np.arange(grid[..., 0].size).reshape(grid.shape[:3])
     inner = ((grid > 0) & (grid < counts)).all(axis=-1, keepdims=True)
     moved = grid + inner * np.random.default_rng(3).uniform(-wobble, wobble, grid.shape)
-    corners = [number[tuple(slice(s, s + n) for s, n in zip(shift, counts))].ravel() for shift in CORNERS]
+    corners = [
+        number[tuple(slice(s, s + n) for s, n in zip(shift, counts))].ravel() for shift in CORNERS
+    ]
     points = moved.reshape(-1, 3) * np.array(size) / counts
-    return PeriodicMesh(points, np.stack(corners, axis=1), np.diag(np.array(size, float)), np.zeros(3), periodic)
+    return PeriodicMesh(
+        points, np.stack(corners, axis=1), np.diag(np.array(size, float)), np.zeros(3), periodic
+    )
 
 
 def centres(mesh):
@@ -52,8 +58,12 @@ def spots(mesh, shift=(0, 0, 0)):
     axes = np.where(along_x[:, None], [[1.0, 0, 0]], [[0, 1.0, 0]])
     yarn = along_x | along_y
     stiffness = np.where(yarn[:, None, None], YARN.stiffness(axes), RESIN.stiffness(axes))
-    expansion = np.where(yarn[:, None], expansion_strain(-0.3e-6, 30e-6, axes), expansion_strain(55e-6, 55e-6, axes))
-    conductivity = np.where(yarn[:, None, None], second_order(7.0, 0.6, axes), second_order(0.2, 0.2, axes))
+    expansion = np.where(
+        yarn[:, None], expansion_strain(-0.3e-6, 30e-6, axes), expansion_strain(55e-6, 55e-6, axes)
+    )
+    conductivity = np.where(
+        yarn[:, None, None], second_order(7.0, 0.6, axes), second_order(0.2, 0.2, axes)
+    )
     return Materials(stiffness, expansion, conductivity, np.where(yarn, 1.6, 1.2))
 
 
@@ -67,7 +77,10 @@ def test_one_material_is_itself_on_any_mesh():
     mesh = box((4, 3, 3), (1.0, 2.0, 0.1), wobble=0.2)
     axes = np.repeat([[0.48, 0.64, 0.6]], len(mesh.hexahedra), axis=0)
     one = Materials(
-        YARN.stiffness(axes), expansion_strain(1e-6, 3e-5, axes), second_order(7.0, 0.6, axes), np.full(len(axes), 1.5)
+        YARN.stiffness(axes),
+        expansion_strain(1e-6, 3e-5, axes),
+        second_order(7.0, 0.6, axes),
+        np.full(len(axes), 1.5),
     )
     effective = homogenise(mesh, one)
     scale = one.stiffness[0].max()
@@ -81,10 +94,17 @@ def test_one_material_is_itself_on_any_mesh():
 def test_symmetry_and_bounds(woven):
     _, _, effective = woven
     assert effective.response.asymmetry < 1e-8
-    np.testing.assert_allclose(effective.stiffness, effective.stiffness.T, atol=1e-8 * effective.stiffness.max())
-    for lower, upper in ((effective.reuss, effective.stiffness), (effective.stiffness, effective.voigt)):
+    np.testing.assert_allclose(
+        effective.stiffness, effective.stiffness.T, atol=1e-8 * effective.stiffness.max()
+    )
+    for lower, upper in (
+        (effective.reuss, effective.stiffness),
+        (effective.stiffness, effective.voigt),
+    ):
         assert np.linalg.eigvalsh(upper - lower).min() > 0
-    np.testing.assert_allclose(effective.conductivity, effective.conductivity.T, rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(
+        effective.conductivity, effective.conductivity.T, rtol=1e-8, atol=1e-12
+    )
 
 
 def test_the_energy_of_the_total_field_is_that_of_the_effective_material(woven):
@@ -101,7 +121,9 @@ def test_the_energy_of_the_total_field_is_that_of_the_effective_material(woven):
             ],
             axis=-1,
         )
-        energy += np.einsum("nq,nqi,nij,nqj->", chunk.weights, strain, materials.stiffness[chunk.elements], strain)
+        energy += np.einsum(
+            "nq,nqi,nij,nqj->", chunk.weights, strain, materials.stiffness[chunk.elements], strain
+        )
     assert energy / mesh.volume == pytest.approx(load @ effective.stiffness @ load, rel=1e-10)
 
 
@@ -112,14 +134,18 @@ def test_the_mean_stress_is_the_effective_one(woven):
         strain = mean_strains(effective.response, UNIT_STRAINS, load)
         np.testing.assert_allclose(weights @ strain / mesh.volume, np.eye(6)[load], atol=1e-12)
         stress = weights @ np.einsum("nij,nj->ni", materials.stiffness, strain) / mesh.volume
-        np.testing.assert_allclose(stress, effective.stiffness[load], atol=1e-6 * effective.stiffness.max())
+        np.testing.assert_allclose(
+            stress, effective.stiffness[load], atol=1e-6 * effective.stiffness.max()
+        )
 
 
 def test_the_cell_may_be_cut_anywhere(woven):
     mesh, _, effective = woven
     for shift in ((0.5, 0, 0), (0.5, 0.5, 0), (0, 0, 0.5)):
         moved = homogenise(mesh, spots(mesh, shift))
-        np.testing.assert_allclose(moved.stiffness, effective.stiffness, atol=1e-8 * effective.stiffness.max())
+        np.testing.assert_allclose(
+            moved.stiffness, effective.stiffness, atol=1e-8 * effective.stiffness.max()
+        )
         np.testing.assert_allclose(moved.expansion, effective.expansion, atol=1e-8 * 55e-6)
         np.testing.assert_allclose(moved.conductivity, effective.conductivity, atol=1e-8 * 7)
 
@@ -127,7 +153,9 @@ def test_the_cell_may_be_cut_anywhere(woven):
 def test_the_cell_may_be_turned_by_90_degrees(woven):
     mesh, materials, effective = woven
     turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
-    turned = PeriodicMesh(mesh.points @ turn.T, mesh.hexahedra, np.diag([2.0, 2.0, 0.5]), np.array([-2.0, 0, 0]))
+    turned = PeriodicMesh(
+        mesh.points @ turn.T, mesh.hexahedra, np.diag([2.0, 2.0, 0.5]), np.array([-2.0, 0, 0])
+    )
     # xx and yy change places; yz and xz too, one with its sign
     order, signs = [1, 0, 2, 4, 3, 5], np.array([1, 1, 1, 1, -1, -1.0])
     stiffness = materials.stiffness[:, order][:, :, order] * np.outer(signs, signs)
@@ -140,10 +168,14 @@ def test_oblique_periods_give_the_same_material():
     """A laminate along z may be cut into a sheared cell: it is the same laminate."""
     straight = box((3, 3, 6), (1.0, 1.0, 0.6))
     slant = np.array([[1.0, 0, 0], [0.5, 1.0, 0], [0, 0, 1.0]])
-    sheared = PeriodicMesh(straight.points @ slant, straight.hexahedra, straight.vectors @ slant, straight.origin)
+    sheared = PeriodicMesh(
+        straight.points @ slant, straight.hexahedra, straight.vectors @ slant, straight.origin
+    )
     materials = layers(straight, [0.0, 90.0])
     np.testing.assert_allclose(
-        homogenise(sheared, materials).stiffness, homogenise(straight, materials).stiffness, atol=1e-9 * 151e3
+        homogenise(sheared, materials).stiffness,
+        homogenise(straight, materials).stiffness,
+        atol=1e-9 * 151e3,
     )
 
 
@@ -152,7 +184,9 @@ def layers(mesh, angles):
     share = (centres(mesh)[:, 2] - mesh.origin[2]) / mesh.vectors[2, 2]
     angle = np.radians(np.array(angles))[(share * len(angles)).astype(int)]
     axes = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))])
-    return Materials(YARN.stiffness(axes), expansion_strain(-0.3e-6, 30e-6, axes), second_order(7.0, 0.6, axes))
+    return Materials(
+        YARN.stiffness(axes), expansion_strain(-0.3e-6, 30e-6, axes), second_order(7.0, 0.6, axes)
+    )
 
 
 def laminate(stiffnesses):
@@ -183,7 +217,9 @@ def test_a_laminate_is_that_of_lamination_theory(angles):
     mesh = box((2, 2, 2 * len(angles)), (1.0, 1.0, 0.3))
     materials = layers(mesh, angles)
     effective = homogenise(mesh, materials)
-    expected = laminate(materials.stiffness[: 2 * len(angles) : 2])  # one column of elements, layer by layer
+    expected = laminate(
+        materials.stiffness[: 2 * len(angles) : 2]
+    )  # one column of elements, layer by layer
     np.testing.assert_allclose(effective.stiffness, expected, atol=1e-9 * expected.max())
     k = materials.conductivity[: 2 * len(angles) : 2]
     np.testing.assert_allclose(effective.conductivity[:2, :2], k.mean(axis=0)[:2, :2], atol=1e-10)
@@ -215,7 +251,10 @@ def test_a_plate_is_that_of_lamination_theory(angles):
     edges = np.linspace(-0.3, 0.3, len(angles) + 1)
     layered = [plane_stiffness(angle) for angle in angles]
     a, b, d = (
-        sum(q * (top**power - floor**power) / power for q, floor, top in zip(layered, edges, edges[1:]))
+        sum(
+            q * (top**power - floor**power) / power
+            for q, floor, top in zip(layered, edges, edges[1:])
+        )
         for power in (1, 2, 3)
     )
     errors = []
@@ -262,5 +301,7 @@ def test_a_solver_that_does_not_converge_gives_nothing(monkeypatch):
     patient = response.solve
     monkeypatch.setattr(response, "solve", lambda *given: patient(*given, most=3))
     mesh = box((4, 4, 4), (1.0, 1.0, 1.0))
-    with pytest.raises(SolverError, match=r"after 3 iterations the residual is \S+ of the load, above 1e-07"):
+    with pytest.raises(
+        SolverError, match=r"after 3 iterations the residual is \S+ of the load, above 1e-07"
+    ):
         homogenise(mesh, spots(mesh))

@@ -5,26 +5,42 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fabric_cad.composite.micromechanics import elastic, thermal_conductivity, thermal_expansion, yarn_properties
+from fabric_cad.composite.micromechanics import (
+    elastic,
+    thermal_conductivity,
+    thermal_expansion,
+    yarn_properties,
+)
 from fabric_cad.composite.substances import Constituents, Fibre, GivenYarn, Matrix
-from fabric_cad.composite.transverse import TransverselyIsotropic, expansion_strain, isotropic, second_order
+from fabric_cad.composite.transverse import (
+    TransverselyIsotropic,
+    expansion_strain,
+    isotropic,
+    second_order,
+)
 
 EPOXY = Matrix(3500.0, 0.35, 1.2, 55e-6, 0.2)
 CARBON = Fibre(230e3, 15e3, 15e3, 7e3, 0.2, 1.76, -0.41e-6, 12e-6, 10.5, 1.2)
 FRACTIONS = np.linspace(0.01, 0.9, 12)
 
 moduli = st.floats(1e3, 1e6)
-laws = st.builds(TransverselyIsotropic, moduli, moduli, moduli, st.floats(-0.1, 0.1), st.floats(-0.5, 0.5)).filter(
-    lambda law: law.margin > 0.05
+laws = st.builds(
+    TransverselyIsotropic, moduli, moduli, moduli, st.floats(-0.1, 0.1), st.floats(-0.5, 0.5)
+).filter(lambda law: law.margin > 0.05)
+directions = (
+    st.tuples(*[st.floats(-1, 1)] * 3).map(np.array).filter(lambda v: np.linalg.norm(v) > 0.1)
 )
-directions = st.tuples(*[st.floats(-1, 1)] * 3).map(np.array).filter(lambda v: np.linalg.norm(v) > 0.1)
 unit_vectors = directions.map(lambda v: v / np.linalg.norm(v))
 
 
 def of_the_matrix(matrix):
     """A fibre made of the matrix."""
     law = matrix.law
-    known = (matrix.density_g_cm3, *[matrix.expansion_per_K] * 2, *[matrix.conductivity_W_per_mK] * 2)
+    known = (
+        matrix.density_g_cm3,
+        *[matrix.expansion_per_K] * 2,
+        *[matrix.conductivity_W_per_mK] * 2,
+    )
     return Fibre(law.E1_MPa, law.E2_MPa, law.G12_MPa, law.G23_MPa, law.nu12, *known)
 
 
@@ -32,7 +48,10 @@ def test_fibres_of_the_matrix_make_the_matrix():
     fibre = of_the_matrix(EPOXY)
     axes = np.repeat([[0.6, 0.0, 0.8]], len(FRACTIONS), axis=0)
     np.testing.assert_allclose(
-        elastic(fibre, EPOXY, FRACTIONS).stiffness(axes), EPOXY.law.stiffness(axes), rtol=1e-13, atol=1e-9
+        elastic(fibre, EPOXY, FRACTIONS).stiffness(axes),
+        EPOXY.law.stiffness(axes),
+        rtol=1e-13,
+        atol=1e-9,
     )
     for pair, value in (
         (thermal_expansion(fibre, EPOXY, FRACTIONS), EPOXY.expansion_per_K),
@@ -56,7 +75,9 @@ def test_chamis_gives_the_worked_values():
     law = elastic(CARBON, EPOXY, 0.64)
     assert law.E1_MPa == pytest.approx(0.64 * 230e3 + 0.36 * 3500)
     assert law.E2_MPa == pytest.approx(3500 / (1 - 0.8 * (1 - 3500 / 15e3)))
-    assert law.G23_MPa == pytest.approx(1 / (0.2 * 2.7 / 3500 + 0.8 / 7e3))  # 1/G = (1 - r)/Gm + r/Gf
+    assert law.G23_MPa == pytest.approx(
+        1 / (0.2 * 2.7 / 3500 + 0.8 / 7e3)
+    )  # 1/G = (1 - r)/Gm + r/Gf
     assert law.nu12 == pytest.approx(0.64 * 0.2 + 0.36 * 0.35)
 
 
@@ -84,7 +105,9 @@ def test_without_a_fraction_nothing_follows_from_constituents():
 @settings(max_examples=50)
 def test_the_stiffness_is_the_inverse_of_the_compliance(law):
     e1, e2, n12, n23 = law.E1_MPa, law.E2_MPa, law.nu12, law.nu23
-    compliance = np.diag([1 / e1, 1 / e2, 1 / e2, 1 / law.G23_MPa, 1 / law.G12_MPa, 1 / law.G12_MPa])
+    compliance = np.diag(
+        [1 / e1, 1 / e2, 1 / e2, 1 / law.G23_MPa, 1 / law.G12_MPa, 1 / law.G12_MPa]
+    )
     compliance[[0, 0, 1, 2], [1, 2, 0, 0]] = -n12 / e1
     compliance[[1, 2], [2, 1]] = -n23 / e2
     np.testing.assert_allclose(law.stiffness(np.eye(3)[:1])[0] @ compliance, np.eye(6), atol=1e-10)
@@ -101,14 +124,18 @@ def test_the_energy_of_a_strain_turns_with_the_axis(law, axis, other):
         voigt = np.array([*np.diag(tensor), 2 * tensor[1, 2], 2 * tensor[0, 2], 2 * tensor[0, 1]])
         return voigt @ law.stiffness(direction[None])[0] @ voigt
 
-    assert energy(strain, axis) == pytest.approx(energy(mirror @ strain @ mirror.T, mirror @ axis), rel=1e-9)
+    assert energy(strain, axis) == pytest.approx(
+        energy(mirror @ strain @ mirror.T, mirror @ axis), rel=1e-9
+    )
 
 
 @given(unit_vectors)
 @settings(max_examples=20)
 def test_an_isotropic_law_has_no_direction(axis):
     law = isotropic(3500.0, 0.35)
-    np.testing.assert_allclose(law.stiffness(axis[None]), law.stiffness(np.eye(3)[:1]), rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(
+        law.stiffness(axis[None]), law.stiffness(np.eye(3)[:1]), rtol=1e-12, atol=1e-9
+    )
 
 
 @given(unit_vectors)
@@ -117,4 +144,6 @@ def test_a_direction_sees_its_own_expansion_and_conductivity(axis):
     xx, yy, zz, yz, xz, xy = expansion_strain(1e-6, 3e-5, axis[None])[0]
     tensor = np.array([[xx, xy / 2, xz / 2], [xy / 2, yy, yz / 2], [xz / 2, yz / 2, zz]])
     np.testing.assert_allclose(tensor @ axis, 1e-6 * axis, atol=1e-15)
-    np.testing.assert_allclose(np.linalg.eigvalsh(second_order(10.0, 1.0, axis[None])[0]), [1, 1, 10], rtol=1e-12)
+    np.testing.assert_allclose(
+        np.linalg.eigvalsh(second_order(10.0, 1.0, axis[None])[0]), [1, 1, 10], rtol=1e-12
+    )

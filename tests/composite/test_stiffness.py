@@ -29,7 +29,11 @@ HEADER = "name,weft_density_per_mm,weft_width_mm,weft_crimp,warp_density_per_mm,
 
 @pytest.fixture(scope="module")
 def fabrics():
-    return {fabric.name: fabric for table in read_families(shipped_families()).values() for fabric in identify(table)}
+    return {
+        fabric.name: fabric
+        for table in read_families(shipped_families()).values()
+        for fabric in identify(table)
+    }
 
 
 def pattern(folder, rows):
@@ -53,18 +57,32 @@ def test_a_balanced_plain_weave_is_as_published(fabrics):
     share, effective = solved(fabrics["plain"])
     assert share == pytest.approx(0.4200, abs=1e-4)
     found = constants(effective.stiffness)
-    published = {"Ex": 33417.0, "Ez": 7014.8, "Gxz": 1950.8, "Gxy": 2724.2, "nu_xy": 0.1024, "nu_xz": 0.4515}
+    published = {
+        "Ex": 33417.0,
+        "Ez": 7014.8,
+        "Gxz": 1950.8,
+        "Gxy": 2724.2,
+        "nu_xy": 0.1024,
+        "nu_xz": 0.4515,
+    }
     for name, value in published.items():
         assert found[name] == pytest.approx(value, rel=1e-3)
     for one, other in (("Ex", "Ey"), ("Gxz", "Gyz"), ("nu_xz", "nu_yz")):
         assert found[one] == pytest.approx(found[other], rel=1e-6)
 
 
-@pytest.mark.parametrize("name", ["plain_flat", "plain_round", "twill21", "satin5", "plain_unbalanced"])
+@pytest.mark.parametrize(
+    "name", ["plain_flat", "plain_round", "twill21", "satin5", "plain_unbalanced"]
+)
 def test_bounds_and_symmetry_on_every_section_form(fabrics, name):
-    gap = {"gap": 2} if fabrics[name].section == "lenticular" else {}  # else as much as strips of resin need
+    gap = (
+        {"gap": 2} if fabrics[name].section == "lenticular" else {}
+    )  # else as much as strips of resin need
     _, effective = solved(fabrics[name], across=4, crossing=4, **gap)
-    for lower, upper in ((effective.reuss, effective.stiffness), (effective.stiffness, effective.voigt)):
+    for lower, upper in (
+        (effective.reuss, effective.stiffness),
+        (effective.stiffness, effective.voigt),
+    ):
         assert np.linalg.eigvalsh(upper - lower).min() > 0
     assert effective.response.asymmetry < 1e-8
     np.testing.assert_allclose(
@@ -74,7 +92,9 @@ def test_bounds_and_symmetry_on_every_section_form(fabrics, name):
 
 def test_yarns_of_resin_make_resin(fabrics):
     law = RESIN.law
-    resin = Constituents(RESIN, None, GivenYarn(None, law.E1_MPa, law.E2_MPa, law.G12_MPa, law.nu12, law.nu23))
+    resin = Constituents(
+        RESIN, None, GivenYarn(None, law.E1_MPa, law.E2_MPa, law.G12_MPa, law.nu12, law.nu23)
+    )
     _, effective = solved(fabrics["twill21"], resin, across=4, crossing=4, gap=2)
     expected = law.stiffness(np.eye(3)[:1])[0]
     for found in (effective.stiffness, effective.voigt, effective.reuss):
@@ -86,13 +106,17 @@ def test_half_a_period_further_is_the_same_material(tmp_path):
     here, there = pattern(tmp_path, [f"here,{numbers},ou/uo,", f"there,{numbers},uo/ou,"])
     mesh = {"across": 4, "crossing": 4, "gap": 2}
     (_, first), (_, second) = solved(here, **mesh), solved(there, **mesh)
-    np.testing.assert_allclose(first.stiffness, second.stiffness, rtol=0, atol=1e-8 * first.stiffness.max())
+    np.testing.assert_allclose(
+        first.stiffness, second.stiffness, rtol=0, atol=1e-8 * first.stiffness.max()
+    )
 
 
 def test_weft_and_warp_exchanged_is_the_mirrored_cell(tmp_path):
     """Mirrored at x = y: xx and yy change places, and so do yz and xz."""
     one, other = "0.25,2.8,0.006,0.22,3.3,0.003,", "0.22,3.3,0.003,0.25,2.8,0.006,"
-    here, mirrored = pattern(tmp_path, [f"here,{one}weft,oou/uoo/ouo,0.92", f"mirrored,{other}warp,uou/uuo/ouu,0.92"])
+    here, mirrored = pattern(
+        tmp_path, [f"here,{one}weft,oou/uoo/ouo,0.92", f"mirrored,{other}warp,uou/uuo/ouu,0.92"]
+    )
     mesh = {"across": 4, "crossing": 4, "gap": 2}
     (_, first), (_, second) = solved(here, **mesh), solved(mirrored, **mesh)
     order = [1, 0, 2, 4, 3, 5]
@@ -104,7 +128,9 @@ def test_weft_and_warp_exchanged_is_the_mirrored_cell(tmp_path):
 def test_a_plate_is_softer_than_a_laminate_in_phase(fabrics):
     """Free floor and ceiling take away what the neighbours above and below hold."""
     fabric = fabrics["plain"]
-    cell = mesh_composite(fabric, composite_mesh_options(fabric, across=4, crossing=4, gap=2), USUAL)
+    cell = mesh_composite(
+        fabric, composite_mesh_options(fabric, across=4, crossing=4, gap=2), USUAL
+    )
     materials = element_materials(cell.mesh, np.where(cell.in_matrix, 0.0, np.nan), YARN)
     plate = homogenise_plate(periodic_mesh(cell, fabric, through=False), materials)
     stack = homogenise(periodic_mesh(cell, fabric), materials).stiffness
@@ -112,7 +138,9 @@ def test_a_plate_is_softer_than_a_laminate_in_phase(fabrics):
     assert np.linalg.eigvalsh(plane - plate.A).min() > 0
     whole = np.block([[plate.A, plate.B], [plate.B.T, plate.D]])
     assert np.linalg.eigvalsh(whole).min() > 0
-    assert np.abs(plate.B).max() < 1e-6 * plate.A.max()  # its two faces are alike, half a period apart
+    assert (
+        np.abs(plate.B).max() < 1e-6 * plate.A.max()
+    )  # its two faces are alike, half a period apart
 
 
 @pytest.fixture(scope="module")
@@ -129,9 +157,17 @@ def test_the_report_holds_what_it_says(written):
     stiffness = np.array(report["C_MPa"])
     np.testing.assert_allclose(stiffness @ report["S_per_MPa"], np.eye(6), atol=1e-9)
     assert report["constants"] == pytest.approx(constants(stiffness))
-    assert {*report} >= {"expansion_per_K", "conductivity_W_per_mK", "density_g_cm3", "voigt_MPa", "reuss_MPa"}
+    assert {*report} >= {
+        "expansion_per_K",
+        "conductivity_W_per_mK",
+        "density_g_cm3",
+        "voigt_MPa",
+        "reuss_MPa",
+    }
     assert report["yarn"]["fibre_fraction"] == {"least": 0.65, "greatest": 0.65}
-    assert report["mesh"]["fibre_volume_fraction"] == pytest.approx(0.65 * report["mesh"]["yarn_volume_fraction"])
+    assert report["mesh"]["fibre_volume_fraction"] == pytest.approx(
+        0.65 * report["mesh"]["yarn_volume_fraction"]
+    )
     share = report["mesh"]["fibre_volume_fraction"]
     assert report["density_g_cm3"] == pytest.approx(share * 1.76 + (1 - share) * 1.2)
     assert report["plate"]["thickness_mm"] == pytest.approx(report["mesh"]["box_mm"][2])
@@ -154,7 +190,9 @@ def test_the_series_adds_up_to_the_stiffness(written):
         grid.points = np.asarray(grid.points) - grid.point_data["displacement"]
         volumes = grid.compute_cell_sizes()["Volume"]
         mean = volumes @ grid.cell_data["stress"] / volumes.sum()
-        np.testing.assert_allclose(mean, 0.01 * stiffness[load][paraview], atol=1e-5 * 0.01 * stiffness.max())
+        np.testing.assert_allclose(
+            mean, 0.01 * stiffness[load][paraview], atol=1e-5 * 0.01 * stiffness.max()
+        )
         mean = volumes @ grid.cell_data["strain"] / volumes.sum()
         np.testing.assert_allclose(mean, 0.01 * np.eye(6)[load][paraview], atol=1e-7)
 
@@ -203,12 +241,20 @@ def test_voxels_are_written(here):
 
 def gauss_weights(mesh):
     """Volumes (elements, 8) at the integration points of C3D8, first axis fastest."""
-    signs = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]) * 2 - 1.0
+    signs = (
+        np.array(
+            [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+        )
+        * 2
+        - 1.0
+    )
     weights = []
     for z, y, x in np.ndindex(2, 2, 2):
         at = (2 * np.array([x, y, z]) - 1) / np.sqrt(3)
         factors = 1 + signs * at
-        slopes = np.stack([signs[:, i] * factors[:, i - 2] * factors[:, i - 1] / 8 for i in range(3)], axis=1)
+        slopes = np.stack(
+            [signs[:, i] * factors[:, i - 2] * factors[:, i - 1] / 8 for i in range(3)], axis=1
+        )
         weights.append(np.linalg.det(np.einsum("ai,naj->nij", slopes, mesh.points[mesh.hexahedra])))
     return np.stack(weights, axis=1)
 
@@ -226,7 +272,19 @@ def test_calculix_finds_the_same_stiffness_from_the_deck(here):
     glass = "[fibre]\nE1_MPa = 73e3\nE2_MPa = 73e3\nG12_MPa = 30e3\nG23_MPa = 30e3\nnu12 = 0.2\ndensity_g_cm3 = 2.5\n"
     (here / "families" / "composite.toml").write_text(glass + "[matrix]\nE_MPa = 3500\nnu = 0.35\n")
     row = "twintex_tpeet22"
-    command = ["stiffness", row, "--across", "4", "--crossing", "4", "--gap", "2", "--layers", "1", "--quiet"]
+    command = [
+        "stiffness",
+        row,
+        "--across",
+        "4",
+        "--crossing",
+        "4",
+        "--gap",
+        "2",
+        "--layers",
+        "1",
+        "--quiet",
+    ]
     assert main([*command, "--deck", "calculix"]) == 0
     assert main(command) == 0
 
@@ -250,9 +308,29 @@ def test_calculix_finds_the_same_stiffness_from_the_deck(here):
 
 
 def test_the_deck_for_abaqus_asks_for_volumes(here):
-    assert main(["stiffness", "plain", "--across", "4", "--gap", "2", "--layers", "1", "--deck", "abaqus", "-q"]) == 0
+    assert (
+        main(
+            [
+                "stiffness",
+                "plain",
+                "--across",
+                "4",
+                "--gap",
+                "2",
+                "--layers",
+                "1",
+                "--deck",
+                "abaqus",
+                "-q",
+            ]
+        )
+        == 0
+    )
     deck = (here / "build" / "plain" / "stiffness.inp").read_text()
     assert deck.count("*STEP") == 6
     assert "S, IVOL" in deck
     assert "*DISTRIBUTION TABLE" in deck
-    assert max(len(word) for line in deck.splitlines() if line[:1] != "*" for word in line.split(", ")) <= 20
+    assert (
+        max(len(word) for line in deck.splitlines() if line[:1] != "*" for word in line.split(", "))
+        <= 20
+    )

@@ -14,7 +14,15 @@ from fabric_cad.yarn.heights import heights
 from fabric_cad.yarn.profiles import section_areas
 from fabric_cad.yarn.swept import swept_yarns
 
-ROWS = ["plain", "plain_flat", "plain_round", "twill22_offsets", "twill22_chords", "twill22_round", "satin5"]
+ROWS = [
+    "plain",
+    "plain_flat",
+    "plain_round",
+    "twill22_offsets",
+    "twill22_chords",
+    "twill22_round",
+    "satin5",
+]
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +40,10 @@ def volume(swept):
     points, weights = np.polynomial.legendre.leggauss(8)
     knots = np.unique(np.concatenate([piece.knots for piece in swept.trajectory.pieces]))
     spans = np.diff(knots)[:, None]
-    return section_areas(swept, (knots[:-1, None] + spans * (points + 1) / 2).ravel()) @ (spans * weights / 2).ravel()
+    return (
+        section_areas(swept, (knots[:-1, None] + spans * (points + 1) / 2).ravel())
+        @ (spans * weights / 2).ravel()
+    )
 
 
 @pytest.mark.parametrize("name", ROWS)
@@ -47,7 +58,9 @@ def test_heights_are_those_of_the_skin(fabrics, name):
             assert np.abs(faces - z).min() < 1e-9
 
     edge = swept.fabric.directions[swept.yarn.direction].width / 2
-    v = edge * np.sin(np.linspace(-np.pi / 2, np.pi / 2, 2001))  # dense at the edges, where arcs are upright
+    v = edge * np.sin(
+        np.linspace(-np.pi / 2, np.pi / 2, 2001)
+    )  # dense at the edges, where arcs are upright
     places = np.array([0.1, 0.37, 0.62]) * swept.planes[-1].place
     lower, upper = heights(swept, places, np.clip(v, -edge, edge))
     area = np.sum((upper - lower)[:, 1:-1] * (v[2:] - v[:-2]) / 2, axis=1)
@@ -67,7 +80,9 @@ def test_shares_are_exact_to_half_a_voxel(fabrics, name):
             way = fabric.directions[swept.yarn.direction]
             beside, up = voxels.spacing[1 - swept.yarn.direction.axis], voxels.spacing[2]
             exact = volumes[swept.yarn.name] / np.prod(voxels.spacing * counts)
-            assert found[swept.yarn.name] == pytest.approx(exact, rel=(beside / way.width + up / way.thickness) / 2)
+            assert found[swept.yarn.name] == pytest.approx(
+                exact, rel=(beside / way.width + up / way.thickness) / 2
+            )
 
 
 def test_every_voxel_between_a_yarns_faces_is_that_yarns(fabrics):
@@ -76,10 +91,16 @@ def test_every_voxel_between_a_yarns_faces_is_that_yarns(fabrics):
     low, high = vertical_extent(fabric)
     assert high - low == pytest.approx(fabric.fabric_thickness)
 
-    x, y, z = (voxels.origin[n] + (np.arange(count) + 0.5) * voxels.spacing[n] for n, count in enumerate((40, 50, 30)))
+    x, y, z = (
+        voxels.origin[n] + (np.arange(count) + 0.5) * voxels.spacing[n]
+        for n, count in enumerate((40, 50, 30))
+    )
     for number, swept in enumerate(swept_yarns(fabric), start=1):
         along, across = (x, y) if swept.yarn.direction == "weft" else (y, x)
-        lower, upper = (face + -(low + high) / 2 for face in heights(swept, along, across - swept.trajectory.axis))
+        lower, upper = (
+            face + -(low + high) / 2
+            for face in heights(swept, along, across - swept.trajectory.axis)
+        )
         inside = (z > lower[..., None]) & (z < upper[..., None])
         own = voxels.body if swept.yarn.direction == "weft" else voxels.body.swapaxes(0, 1)
         np.testing.assert_array_equal(own == number, inside)
@@ -107,7 +128,9 @@ def test_axes_are_unit_vectors_along_the_yarns(fabrics):
 def test_fractions_are_those_along_the_yarn(tables, fabrics):
     row = tables["plain"]["twintex_tpeet22"]
     fabric = fabrics["twintex_tpeet22"]
-    sections = fibre_sections(row, Constituents(Matrix(3500.0, 0.35), Fibre(73e3, 73e3, 30e3, 30e3, 0.2, 2.5)))
+    sections = fibre_sections(
+        row, Constituents(Matrix(3500.0, 0.35), Fibre(73e3, 73e3, 30e3, 30e3, 0.2, 2.5))
+    )
     voxels = voxelise(fabric, (24, 24, 20), 0.05, sections)
     swept = swept_yarns(fabric)[0]
     places = (np.arange(24) + 0.5) * voxels.spacing[0]
@@ -118,7 +141,9 @@ def test_fractions_are_those_along_the_yarn(tables, fabrics):
     assert not voxels.fibre_fraction[voxels.body == 0].any()
     assert np.isnan(voxelise(fabric, (6, 6, 6), 0.05).fibre_fraction).any()
 
-    given = fibre_sections(row, Constituents(Matrix(3500.0, 0.35), None, GivenYarn(0.5, own_fraction=True)))
+    given = fibre_sections(
+        row, Constituents(Matrix(3500.0, 0.35), None, GivenYarn(0.5, own_fraction=True))
+    )
     half = voxelise(fabric, (6, 6, 6), 0.05, given)
     np.testing.assert_array_equal(np.unique(half.fibre_fraction), [0, 0.5])
 
@@ -130,11 +155,19 @@ def test_both_files_hold_the_same(fabrics, tmp_path):
     voxels.write_npz(tmp_path / "voxels.npz")
     voxels.write_vti(tmp_path / "voxels.vti")
     stored, image = np.load(tmp_path / "voxels.npz"), pyvista.read(tmp_path / "voxels.vti")
-    assert stored["yarns"].tolist() == ["weft_1", "weft_2", "warp_1", "warp_2"] == list(image.field_data["yarn_names"])
-    np.testing.assert_array_equal(stored["body"], image.cell_data["body"].reshape(9, 8, 7).transpose(2, 1, 0))
+    assert (
+        stored["yarns"].tolist()
+        == ["weft_1", "weft_2", "warp_1", "warp_2"]
+        == list(image.field_data["yarn_names"])
+    )
+    np.testing.assert_array_equal(
+        stored["body"], image.cell_data["body"].reshape(9, 8, 7).transpose(2, 1, 0)
+    )
     axes = image.cell_data["fibre_axis"].reshape(9, 8, 7, 3).transpose(2, 1, 0, 3)
     np.testing.assert_array_equal(stored["fibre_axis"], axes)
-    np.testing.assert_allclose(image.bounds[1::2], stored["origin_mm"] + stored["spacing_mm"] * (7, 8, 9))
+    np.testing.assert_allclose(
+        image.bounds[1::2], stored["origin_mm"] + stored["spacing_mm"] * (7, 8, 9)
+    )
     for point in image.cell_centers().points[::37]:
         x, y, z = ((point - stored["origin_mm"]) / stored["spacing_mm"]).astype(int)
         assert image.cell_data["body"][image.find_containing_cell(point)] == stored["body"][x, y, z]

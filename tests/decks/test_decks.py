@@ -46,7 +46,9 @@ def two_yarns():
         "warp_1_start": np.array([[8, 11, 10, 9]]),
         "warp_1_end": np.array([[12, 13, 14, 15]]),
     }
-    return mesh_named(np.vstack([weft, warp]), hexahedra, np.array([0, 1]), ("weft_1", "warp_1"), surfaces)
+    return mesh_named(
+        np.vstack([weft, warp]), hexahedra, np.array([0, 1]), ("weft_1", "warp_1"), surfaces
+    )
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
@@ -61,10 +63,22 @@ def test_golden_text(two_yarns, dialect, tmp_path, request):
 
 
 def test_every_quadrilateral_is_the_named_face_of_its_element(two_yarns):
-    corners = [(1, 2, 3, 4), (5, 8, 7, 6), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 8, 4), (4, 8, 5, 1)]  # of C3D8, S1 ... S6
+    corners = [
+        (1, 2, 3, 4),
+        (5, 8, 7, 6),
+        (1, 5, 6, 2),
+        (2, 6, 7, 3),
+        (3, 7, 8, 4),
+        (4, 8, 5, 1),
+    ]  # of C3D8, S1 ... S6
     for name, faces in element_faces(two_yarns).items():
-        found = [{int(two_yarns.hexahedra[e, k - 1]) for k in corners[s]} for e, s in zip(faces.elements, faces.sides)]
-        assert sorted(map(sorted, found)) == sorted(sorted(quad) for quad in two_yarns.surfaces[name].tolist())
+        found = [
+            {int(two_yarns.hexahedra[e, k - 1]) for k in corners[s]}
+            for e, s in zip(faces.elements, faces.sides)
+        ]
+        assert sorted(map(sorted, found)) == sorted(
+            sorted(quad) for quad in two_yarns.surfaces[name].tolist()
+        )
 
 
 def test_a_surface_of_no_element_is_refused(two_yarns):
@@ -84,7 +98,10 @@ def test_axes_are_orthonormal_and_follow_the_yarn(two_yarns):
 def two_yarn_model(mesh, **options):
     """Every kind of keyword: friction or a tie, compaction, two loads."""
     law = EngineeringConstants(35000, 70, 60, 0.1, 0.2, 0.3, 30, 20, 10)
-    loads = (Load("first", (0.001, 0.0, 0.0), (0.0, 0.002, 0.0)), Load("second", (0.0, 1e-9, 0.0), (1 / 3, 0.0, 0.0)))
+    loads = (
+        Load("first", (0.001, 0.0, 0.0), (0.0, 0.002, 0.0)),
+        Load("second", (0.0, 1e-9, 0.0), (1 / 3, 0.0, 0.0)),
+    )
     touch = Touch(options.get("kind", "penalty"), 1e4, 0.3, 1e3)
     return model_keywords(
         mesh,
@@ -97,7 +114,9 @@ def two_yarn_model(mesh, **options):
     )
 
 
-@pytest.mark.parametrize(("kind", "dialect"), [("penalty", "calculix"), ("penalty", "abaqus"), ("tie", "calculix")])
+@pytest.mark.parametrize(
+    ("kind", "dialect"), [("penalty", "calculix"), ("penalty", "abaqus"), ("tie", "calculix")]
+)
 def test_golden_model(flat_yarns, kind, dialect, tmp_path, request):
     write_keywords(two_yarn_model(flat_yarns, kind=kind), tmp_path / "model.inp", dialect)
     text = (tmp_path / "model.inp").read_text()
@@ -123,7 +142,11 @@ def flat_yarns():
         "warp_1_end": np.array([[12, 13, 14, 15]]),
     }
     return mesh_named(
-        np.vstack([weft, warp]), np.arange(16).reshape(2, 8), np.array([0, 1]), ("weft_1", "warp_1"), surfaces
+        np.vstack([weft, warp]),
+        np.arange(16).reshape(2, 8),
+        np.array([0, 1]),
+        ("weft_1", "warp_1"),
+        surfaces,
     )
 
 

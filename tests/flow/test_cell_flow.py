@@ -18,7 +18,11 @@ from fabric_cad.yarn.swept import swept_yarns
 
 @pytest.fixture(scope="module")
 def fabrics():
-    return {fabric.name: fabric for table in read_families(shipped_families()).values() for fabric in identify(table)}
+    return {
+        fabric.name: fabric
+        for table in read_families(shipped_families()).values()
+        for fabric in identify(table)
+    }
 
 
 def coarse(fabric, top=Top.PERIODIC, **asked):

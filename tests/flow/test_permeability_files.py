@@ -30,7 +30,11 @@ def test_every_file_is_there_and_traced(written):
     folder, report = written
     assert {path.name for path in folder.iterdir()} == FILES
     assert set(report["files"]) == FILES - {"permeability.json"}
-    assert report["measured"]["name"] == "plain" and report["yarns"] == "rigid" and report["top"] == "periodic"
+    assert (
+        report["measured"]["name"] == "plain"
+        and report["yarns"] == "rigid"
+        and report["top"] == "periodic"
+    )
 
 
 def test_principal_values_and_axes_are_those_of_the_tensor(written):
@@ -38,7 +42,9 @@ def test_principal_values_and_axes_are_those_of_the_tensor(written):
     tensor, axes = np.array(report["K_mm2"]), np.array(report["axes"])
     assert report["principal_mm2"] == sorted(report["principal_mm2"], reverse=True)
     np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
-    np.testing.assert_allclose(axes.T @ np.diag(report["principal_mm2"]) @ axes, tensor, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        axes.T @ np.diag(report["principal_mm2"]) @ axes, tensor, rtol=0, atol=1e-12
+    )
 
 
 def test_the_error_bar_is_what_another_mesh_differs_by(written):
@@ -72,12 +78,19 @@ def test_paraview_finds_the_flow_that_the_tensor_tells(written):
 
     folder, report = written
     grid = pyvista.read(folder / "permeability.vtu")
-    assert {f"velocity_{a}_mm2" for a in "xyz"} | {f"pressure_{a}_mm" for a in "xyz"} == set(grid.point_data)
+    assert {f"velocity_{a}_mm2" for a in "xyz"} | {f"pressure_{a}_mm" for a in "xyz"} == set(
+        grid.point_data
+    )
     nodes = grid.cell_connectivity.reshape(-1, 27)
     volumes = hexahedra_volumes(grid.points[nodes[:, :8]])
     weights = np.repeat([1, 4, 16, 64], [8, 12, 6, 1]) / 216
-    means = np.einsum("e,n,enc->c", volumes, weights, grid.point_data["velocity_x_mm2"][nodes]) / volumes.sum()
-    assert means[0] * report["mesh"]["fine"]["porosity"] == pytest.approx(report["K_mm2"][0][0], rel=0.05)
+    means = (
+        np.einsum("e,n,enc->c", volumes, weights, grid.point_data["velocity_x_mm2"][nodes])
+        / volumes.sum()
+    )
+    assert means[0] * report["mesh"]["fine"]["porosity"] == pytest.approx(
+        report["K_mm2"][0][0], rel=0.05
+    )
 
     middle = grid.points[nodes[:, 20:26]]  # of the faces -x +x -y +y -z +z
     assert (middle[:, 1, 0] > middle[:, 0, 0]).all() and (middle[:, 3, 1] > middle[:, 2, 1]).all()
@@ -96,10 +109,14 @@ def test_porous_yarns_let_a_little_more_through(written, tmp_path):
     assert porous["yarns"] == "porous" and porous["fibre_diameter_um"] == pytest.approx(70)
     for axis in range(3):
         assert 1 < porous["K_mm2"][axis][axis] / rigid["K_mm2"][axis][axis] < 1.05
-    assert porous["mesh"]["fine"]["porosity"] == pytest.approx(rigid["mesh"]["fine"]["porosity"], rel=1e-9)
+    assert porous["mesh"]["fine"]["porosity"] == pytest.approx(
+        rigid["mesh"]["fine"]["porosity"], rel=1e-9
+    )
 
 
-@pytest.mark.parametrize("options", [["--yarns", "porous", "--fibre-diameter", "0"], ["--fibre-diameter", "7"]])
+@pytest.mark.parametrize(
+    "options", [["--yarns", "porous", "--fibre-diameter", "0"], ["--fibre-diameter", "7"]]
+)
 def test_a_fibre_without_diameter_or_pores_is_refused(tmp_path, capsys, options):
     common = ["--families", str(shipped_families()), "--out", str(tmp_path)]
     try:

@@ -30,10 +30,14 @@ def test_fibres_everywhere_have_their_own_permeability(angle, fraction, radius):
     """The mixture to which porous yarns tend as the space between them closes."""
     axis = np.array([np.cos(angle), np.sin(angle), 0.0])
     mesh = QuadraticMesh.straight(box((2, 2, 2), (1.0, 1.2, 0.7)))
-    resistance = np.broadcast_to(gebart.resistance(radius, np.array([fraction]), axis[None]), (8, 3, 3))
+    resistance = np.broadcast_to(
+        gebart.resistance(radius, np.array([fraction]), axis[None]), (8, 3, 3)
+    )
     flow = porous_flow(mesh, resistance, np.eye(3))
     one = np.outer(axis, axis)
-    wanted = gebart.along(radius, fraction) * one + gebart.across(radius, fraction) * (np.eye(3) - one)
+    wanted = gebart.along(radius, fraction) * one + gebart.across(radius, fraction) * (
+        np.eye(3) - one
+    )
     np.testing.assert_allclose(flow.permeability, wanted, rtol=0, atol=1e-8 * wanted.max())
 
 

@@ -24,7 +24,9 @@ def test_a_slot_has_a_twelfth_of_its_height_squared(height, lean, counts):
     """Q2 elements hold the parabola exactly, on cells that lean as well."""
     mesh = QuadraticMesh.straight(box(counts, [[1.0, 0, 0], [lean, 0.8, 0], [0, 0, height]], SLOT))
     _, flow = flow_between_walls(mesh, np.eye(3)[:2], 1e-11)
-    np.testing.assert_allclose(flow.permeability, np.diag([1, 1, 0]) * height**2 / 12, rtol=0, atol=1e-10 * height**2)
+    np.testing.assert_allclose(
+        flow.permeability, np.diag([1, 1, 0]) * height**2 / 12, rtol=0, atol=1e-10 * height**2
+    )
     assert flow.work < 1e-9 and flow.divergence < 1e-9
 
 
@@ -34,7 +36,9 @@ def test_a_pipe_has_an_eighth_of_its_radius_squared():
     assert flow.permeability[2, 2] == pytest.approx(np.pi * radius**4 / 8, rel=1e-3)
 
 
-@pytest.mark.parametrize(("solid", "drag"), [(0.05, 15.56), (0.2, 51.53), (0.4, 217.89), (0.6, 1763.0)])
+@pytest.mark.parametrize(
+    ("solid", "drag"), [(0.05, 15.56), (0.2, 51.53), (0.4, 217.89), (0.6, 1763.0)]
+)
 def test_a_square_array_of_cylinders_has_the_published_drag(solid, drag):
     """A. S. Sangani and A. Acrivos, Int. J. Multiphase Flow 8 (1982) 193-206: drag over viscosity and mean velocity."""
     mesh = around_a_cylinder(np.sqrt(solid / np.pi), sides=4, rings=6)
@@ -79,7 +83,12 @@ def test_a_folded_hexahedron_is_refused():
 
 @pytest.mark.parametrize(
     ("periodic", "closed"),
-    [((True, True, True), []), ((True, True, False), [2]), ((False, True, False), [0, 2]), ((False,) * 3, [0, 1, 2])],
+    [
+        ((True, True, True), []),
+        ((True, True, False), [2]),
+        ((False, True, False), [0, 2]),
+        ((False,) * 3, [0, 1, 2]),
+    ],
 )
 def test_walls_close_the_directions_across_them(periodic, closed):
     mesh = QuadraticMesh.straight(box((2, 3, 1), (1.0, 1.0, 1.0), periodic))
@@ -93,7 +102,9 @@ def test_a_channel_that_winds_is_open_along_itself_alone():
     column, row = np.divmod(np.arange(36), 6)
     channel = np.array([drawn[r][c] == "x" for c, r in zip(column, row)])
     used, corners = np.unique(whole.hexahedra[channel], return_inverse=True)
-    mesh = type(whole)(whole.points[used], corners.reshape(-1, 8), whole.vectors, whole.origin, whole.periodic)
+    mesh = type(whole)(
+        whole.points[used], corners.reshape(-1, 8), whole.vectors, whole.origin, whole.periodic
+    )
     (way,) = open_directions(QuadraticMesh.straight(mesh))
     np.testing.assert_allclose(np.abs(way), np.array([1, 1, 0]) / np.sqrt(2), atol=1e-12)
     assert way[0] * way[1] > 0

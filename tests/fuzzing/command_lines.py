@@ -100,13 +100,25 @@ AROUND: tuple[tuple[tuple[str, ...], Callable[[], None], tuple[int, ...]], ...] 
 
 def trial(seed: int) -> Trial:
     """The commands of the list one after another; beyond its end, drawn ones."""
-    files: dict[str, bytes | None] = {f"families/{path.name}": path.read_bytes() for path in SHIPPED.glob("*.*")}
+    files: dict[str, bytes | None] = {
+        f"families/{path.name}": path.read_bytes() for path in SHIPPED.glob("*.*")
+    }
     files |= {"a_file": b"[WIF]\nVersion=1.1\n", "an empty folder": None}
     if seed < len(WRONG):
         arguments, named = WRONG[seed]
-        statuses = (0, 1, 2) if {"--ccx", "--out"} & set(arguments) else (0, 2)  # 1: no solver, no place for results
+        statuses = (
+            (0, 1, 2) if {"--ccx", "--out"} & set(arguments) else (0, 2)
+        )  # 1: no solver, no place for results
         place = "|".join(map(re.escape, named))
-        return Trial(_shown(arguments), arguments, files, place, LEAVES, statuses=statuses, fresh=seed % 10 == 5)
+        return Trial(
+            _shown(arguments),
+            arguments,
+            files,
+            place,
+            LEAVES,
+            statuses=statuses,
+            fresh=seed % 10 == 5,
+        )
     if seed < len(WRONG) + len(AROUND):
         arguments, prepare, statuses = AROUND[seed - len(WRONG)]
         name = f"{_shown(arguments)} with {prepare.__name__.strip('_').replace('_', ' ')}"
@@ -116,8 +128,22 @@ def trial(seed: int) -> Trial:
 
 def _drawn(rng: np.random.Generator, files) -> Trial:
     """A command with options and values that fit, or do not, in any order."""
-    arguments = [pick(rng, ("list", "solve", "validate", "cell", "wif", "study", "init", "", "-", "--"))]
-    pool = ("plain", "twill32", "families", "a_file", "--out", "out", "-q", "--families", "--size", "--across", "--gap")
+    arguments = [
+        pick(rng, ("list", "solve", "validate", "cell", "wif", "study", "init", "", "-", "--"))
+    ]
+    pool = (
+        "plain",
+        "twill32",
+        "families",
+        "a_file",
+        "--out",
+        "out",
+        "-q",
+        "--families",
+        "--size",
+        "--across",
+        "--gap",
+    )
     for _ in range(int(rng.integers(6))):
         word = pick(rng, pool) if rng.random() < 0.7 else pick(rng, ODD_TEXTS)
         arguments.insert(int(rng.integers(len(arguments) + 1)), word.replace("\x00", ""))

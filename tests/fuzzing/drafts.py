@@ -18,11 +18,22 @@ def sound(rng: np.random.Generator) -> str:
     warps, wefts = (shafts * int(rng.integers(1, 6)) for _ in range(2))
     straight = [f"{number + 1}={number % shafts + 1}" for number in range(max(warps, wefts))]
     ties = [f"{number + 1}={number + 1},{(number + 1) % shafts + 1}" for number in range(shafts)]
-    lifts = [f"{number + 1}={number % shafts + 1},{(number + 1) % shafts + 1}" for number in range(wefts)]
+    lifts = [
+        f"{number + 1}={number % shafts + 1},{(number + 1) % shafts + 1}" for number in range(wefts)
+    ]
     parts = {
-        "WIF": ["Version=1.1", "Date=April 20, 1997", "Developers=wif@mhsoft.com", "Source Program=none"],
+        "WIF": [
+            "Version=1.1",
+            "Date=April 20, 1997",
+            "Developers=wif@mhsoft.com",
+            "Source Program=none",
+        ],
         "CONTENTS": ["THREADING=yes", "WEAVING=yes", "COLOR TABLE=yes"],
-        "WEAVING": [f"Shafts={shafts}", f"Treadles={shafts}", f"Rising Shed={pick(rng, ('true', 'no', '1'))}"],
+        "WEAVING": [
+            f"Shafts={shafts}",
+            f"Treadles={shafts}",
+            f"Rising Shed={pick(rng, ('true', 'no', '1'))}",
+        ],
         "WARP": [f"Threads={warps}", "Units=centimeters", "Spacing=0.212", "Color=1"],
         "WEFT": [f"Threads={wefts}", "Units=inches", "Spacing=0.1"],
         "COLOR PALETTE": ["Entries=2", "Form=RGB", "Range=0,255"],
@@ -82,16 +93,30 @@ def _spoil_line(rng: np.random.Generator, text: str) -> str:
     elif kind == 2:
         lines[number] = f"{key}={pick(rng, ODD_TEXTS)}"
     elif kind == 3:
-        lines[number] = f"{pick(rng, ('0', '9999', '-1', '1', '²', '٣', '01', '1.0', *ODD_TEXTS))}={value}"
+        lines[number] = (
+            f"{pick(rng, ('0', '9999', '-1', '1', '²', '٣', '01', '1.0', *ODD_TEXTS))}={value}"
+        )
     elif kind == 4:
         lines[head] = pick(
-            rng, ("[]", "[WIF", "WIF]", "[  ]", "[WARP]", lines[head].lower(), lines[head] * 2, "[DEFAULT]")
+            rng,
+            (
+                "[]",
+                "[WIF",
+                "WIF]",
+                "[  ]",
+                "[WARP]",
+                lines[head].lower(),
+                lines[head] * 2,
+                "[DEFAULT]",
+            ),
         )
     elif kind == 5:  # a whole section away
         end = next((later for later in heads if later > head), len(lines))
         del lines[head:end]
     elif kind == 6:
-        lines[number] = lines[number].replace("=", pick(rng, (" = ", ":", "==", "=;", " ", "= ; no ")))
+        lines[number] = lines[number].replace(
+            "=", pick(rng, (" = ", ":", "==", "=;", " ", "= ; no "))
+        )
     else:
         number = re.sub(r"\d+", lambda digits: str(int(rng.integers(60))), value)
         lines[pick(rng, keys)] = f"{key}={number}"

@@ -54,7 +54,11 @@ class Place:
         """Start ``cell`` in a fork; its process number."""
         with open(self.log.with_name(log), "ab") as output:
             return fork_command(
-                ("cell", ROW, "-q", *options), self.root, self.temporary, output.fileno(), output.fileno()
+                ("cell", ROW, "-q", *options),
+                self.root,
+                self.temporary,
+                output.fileno(),
+                output.fileno(),
             )
 
     def told(self, log: str = "log") -> str:
@@ -75,7 +79,10 @@ class Place:
     def reported(self, process: int, rng: np.random.Generator) -> float:
         """Wait until a run has written its report aside, or ended, and 0.1 to 300 ms more; these s."""
         later = float(10 ** rng.uniform(-4, -0.5))
-        while not (any(self.reports()) or os.waitid(os.P_PID, process, os.WEXITED | os.WNOHANG | os.WNOWAIT)):
+        while not (
+            any(self.reports())
+            or os.waitid(os.P_PID, process, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+        ):
             time.sleep(2e-4)
         time.sleep(later)
         return later
@@ -87,8 +94,15 @@ class Place:
 
     def litter(self) -> list[str]:
         """Whatever lies about beside the row's result; what is kept on purpose (locks) has no content."""
-        paths = [*self.temporary.iterdir(), *(path for path in (self.root / "build").iterdir() if path != self.folder)]
-        return [path.name for path in paths if path.is_dir() or path.stat().st_size or path.parent == self.temporary]
+        paths = [
+            *self.temporary.iterdir(),
+            *(path for path in (self.root / "build").iterdir() if path != self.folder),
+        ]
+        return [
+            path.name
+            for path in paths
+            if path.is_dir() or path.stat().st_size or path.parent == self.temporary
+        ]
 
 
 @cache
@@ -102,7 +116,9 @@ def undisturbed() -> tuple[float, int, int]:
             status = wait(place.start(options), CELL_LIMIT)
             seconds = time.perf_counter() - start
             if status:
-                raise RuntimeError(f"an undisturbed cell ended with status {status}: {place.told()}")
+                raise RuntimeError(
+                    f"an undisturbed cell ended with status {status}: {place.told()}"
+                )
             counts.append(place.elements()[0])
         return seconds, *counts
 

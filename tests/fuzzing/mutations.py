@@ -8,14 +8,103 @@ from collections.abc import Callable
 import numpy as np
 
 ODD_TEXTS = (
-    *("", " ", "nan", "NaN", "inf", "-inf", "Infinity", "1e400", "1e-320", "1e308", "-0", "0", "0.0", "-2.4", "1e"),
-    *("1,5", "1.5.5", "1_000", "0x10", "1e5", "2.4 mm", "1/2", "10/01", "10-Jan", "--", "+-1", ".", "e5", "5e-324"),
+    *(
+        "",
+        " ",
+        "nan",
+        "NaN",
+        "inf",
+        "-inf",
+        "Infinity",
+        "1e400",
+        "1e-320",
+        "1e308",
+        "-0",
+        "0",
+        "0.0",
+        "-2.4",
+        "1e",
+    ),
+    *(
+        "1,5",
+        "1.5.5",
+        "1_000",
+        "0x10",
+        "1e5",
+        "2.4 mm",
+        "1/2",
+        "10/01",
+        "10-Jan",
+        "--",
+        "+-1",
+        ".",
+        "e5",
+        "5e-324",
+    ),
     *("٠٫٤", "١٢٣", "２．４", "²", "½", "Ⅷ", "௧௨", "३"),  # digits of other scripts
-    *("=1+1", '=HYPERLINK("http://x";"y")', "@SUM(1)", "+cmd|' /C calc'!A0", "-1+1", "#REF!", "#NUM!", "#DIV/0!"),
-    *("\x00", "a\x00b", "\x1b[31mred\x1b[0m", "\x1b]0;title\x07", "\r", "\x08\x08\x08", "\x7f", "\x85", "\x9b31m"),
-    *("\u202e0.4", "\ufeff2.4", "\u20282.4", "\u00a00.4", "0.4\u200b", "🧵", "é", "\ufffd", "\U0010ffff"),
-    *("True", "false", "None", "null", "[]", "{}", "../../etc/passwd", "con", "..", "/", "~", "$HOME", "%s%n", "{0}"),
-    *('"', '""', "'", ";", ",", "\t", "x\ny", "#", "# no", "a" * 300, "9" * 400, "0." + "3" * 5000, "-" * 200),
+    *(
+        "=1+1",
+        '=HYPERLINK("http://x";"y")',
+        "@SUM(1)",
+        "+cmd|' /C calc'!A0",
+        "-1+1",
+        "#REF!",
+        "#NUM!",
+        "#DIV/0!",
+    ),
+    *(
+        "\x00",
+        "a\x00b",
+        "\x1b[31mred\x1b[0m",
+        "\x1b]0;title\x07",
+        "\r",
+        "\x08\x08\x08",
+        "\x7f",
+        "\x85",
+        "\x9b31m",
+    ),
+    *(
+        "\u202e0.4",
+        "\ufeff2.4",
+        "\u20282.4",
+        "\u00a00.4",
+        "0.4\u200b",
+        "🧵",
+        "é",
+        "\ufffd",
+        "\U0010ffff",
+    ),
+    *(
+        "True",
+        "false",
+        "None",
+        "null",
+        "[]",
+        "{}",
+        "../../etc/passwd",
+        "con",
+        "..",
+        "/",
+        "~",
+        "$HOME",
+        "%s%n",
+        "{0}",
+    ),
+    *(
+        '"',
+        '""',
+        "'",
+        ";",
+        ",",
+        "\t",
+        "x\ny",
+        "#",
+        "# no",
+        "a" * 300,
+        "9" * 400,
+        "0." + "3" * 5000,
+        "-" * 200,
+    ),
     *(
         "twill",
         "plain",
@@ -32,7 +121,23 @@ ODD_TEXTS = (
         "101",
     ),
 )
-ODD_NUMBERS = ("0", "1", "2", "3", "7", "99", "100", "1e-9", "1e9", "0.5", "0.999999", "4.0", "0.001", "1e15", "0.3")
+ODD_NUMBERS = (
+    "0",
+    "1",
+    "2",
+    "3",
+    "7",
+    "99",
+    "100",
+    "1e-9",
+    "1e9",
+    "0.5",
+    "0.999999",
+    "4.0",
+    "0.001",
+    "1e15",
+    "0.3",
+)
 
 
 def pick(rng: np.random.Generator, choices):
@@ -52,7 +157,9 @@ def spoil_cells(rng: np.random.Generator, rows: list[list[str]]) -> list[list[st
 def _odd_cell(rng, rows) -> None:
     row = pick(rng, rows[1:] or rows)
     if row:
-        row[int(rng.integers(len(row)))] = pick(rng, ODD_TEXTS if rng.random() < 0.7 else ODD_NUMBERS)
+        row[int(rng.integers(len(row)))] = pick(
+            rng, ODD_TEXTS if rng.random() < 0.7 else ODD_NUMBERS
+        )
 
 
 def _odd_head(rng, rows) -> None:
@@ -60,13 +167,18 @@ def _odd_head(rng, rows) -> None:
         column = int(rng.integers(len(rows[0])))
         name = rows[0][column]
         rows[0][column] = pick(
-            rng, (name.upper(), name[:-1], name + " ", name + "_std", name + "x", pick(rng, ODD_TEXTS))
+            rng,
+            (name.upper(), name[:-1], name + " ", name + "_std", name + "x", pick(rng, ODD_TEXTS)),
         )
 
 
 def _scaled(rng, rows) -> None:
     row = pick(rng, rows[1:] or rows)
-    numbers = [column for column, cell in enumerate(row) if cell.replace(".", "", 1).isdigit() and cell.isascii()]
+    numbers = [
+        column
+        for column, cell in enumerate(row)
+        if cell.replace(".", "", 1).isdigit() and cell.isascii()
+    ]
     if numbers:
         column = pick(rng, numbers)
         row[column] = repr(float(row[column]) * float(10 ** rng.uniform(-6, 6)))
@@ -145,7 +257,9 @@ def spoil_text(rng: np.random.Generator, text: str) -> str:
     elif kind == 4:
         lines[here] += odd
     elif kind == 5:
-        lines[here] = pick(rng, ("  ", "\t", "#", "\ufeff", '"', "[", ";", "sep=;\n", "=")) + lines[here]
+        lines[here] = (
+            pick(rng, ("  ", "\t", "#", "\ufeff", '"', "[", ";", "sep=;\n", "=")) + lines[here]
+        )
     elif kind == 6:
         return text[:place] + odd + text[place:]
     elif kind == 7:

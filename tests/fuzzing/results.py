@@ -11,7 +11,10 @@ from pathlib import Path
 
 def row_files(row: str) -> set[str]:
     """Names of every file of a row's result."""
-    return {f"{row}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")} | {"solved.csv", "report.json"}
+    return {f"{row}.{kind}" for kind in ("step", "msh", "inp", "vtu", "png")} | {
+        "solved.csv",
+        "report.json",
+    }
 
 
 def read_folder(folder: Path) -> dict[str, bytes]:
@@ -50,5 +53,7 @@ def mixed(row: str, contents: dict[str, bytes]) -> list[str]:
 
 def deck_elements(deck: bytes) -> int:
     """Number of elements of a deck."""
-    blocks = re.findall(rb"^\*ELEMENT\b[^\n]*\n((?:[^*\n][^\n]*\n)*)", deck, re.IGNORECASE | re.MULTILINE)
+    blocks = re.findall(
+        rb"^\*ELEMENT\b[^\n]*\n((?:[^*\n][^\n]*\n)*)", deck, re.IGNORECASE | re.MULTILINE
+    )
     return sum(block.count(b"\n") for block in blocks)

@@ -41,7 +41,9 @@ def trial(seed: int) -> Trial:
         files[f"families/{other}.csv"] = (SHIPPED / f"{other}.csv").read_bytes()
     name = f"{' '.join(command)} of a spoilt {family}.{kind}"
     place = CSV_PLACE if kind == "csv" else WORKBOOK_PLACE
-    if command[0] == "cell" or kind != "csv":  # the row is gone, or the workbook is no file that is read
+    if (
+        command[0] == "cell" or kind != "csv"
+    ):  # the row is gone, or the workbook is no file that is read
         place += "|^families: no "
     leaves = LEAVES if command == ("solve",) else r"(?!)"
     return Trial(name, command, files, place, leaves, leaves, fresh=seed % 50 == 10)
@@ -50,7 +52,9 @@ def trial(seed: int) -> Trial:
 def csv_bytes(rng: np.random.Generator, cells: list[list[str]]) -> bytes:
     """A table as CSV, spoilt in its cells, its text or its bytes."""
     level = rng.random()
-    text = csv_text(spoil_cells(rng, cells) if level < 0.6 else cells, ";" if rng.random() < 0.2 else ",")
+    text = csv_text(
+        spoil_cells(rng, cells) if level < 0.6 else cells, ";" if rng.random() < 0.2 else ","
+    )
     if 0.6 <= level < 0.85:
         text = spoil_text(rng, text)
     content = encoded(rng, text)
@@ -79,7 +83,10 @@ def _value(rng: np.random.Generator, cell: str):
     if rng.random() < 0.005:
         import datetime
 
-        return pick(rng, (True, datetime.date(2026, 10, 1), datetime.timedelta(hours=3), 1e300, -1, 0.1 + 0.2))
+        return pick(
+            rng,
+            (True, datetime.date(2026, 10, 1), datetime.timedelta(hours=3), 1e300, -1, 0.1 + 0.2),
+        )
     try:
         return float(cell) if cell.isascii() and np.isfinite(float(cell)) else cell
     except ValueError:
@@ -94,7 +101,12 @@ def _xlsx(cells: list[list], sheets: int) -> bytes:
     for number in range(sheets):
         sheet = book.active if number == 0 else book.create_sheet()
         for row in cells:
-            sheet.append([ILLEGAL_CHARACTERS_RE.sub("", cell) if isinstance(cell, str) else cell for cell in row])
+            sheet.append(
+                [
+                    ILLEGAL_CHARACTERS_RE.sub("", cell) if isinstance(cell, str) else cell
+                    for cell in row
+                ]
+            )
     content = io.BytesIO()
     book.save(content)
     return content.getvalue()

@@ -57,14 +57,70 @@ weft_crimp_percent = [0.3, 0.4]
 """,
 )
 VALUES = (
-    *("0", "-1", "1", "1.5", "true", "false", '""', '"x"', "[]", "{}", "[[]]", "[1, 'a']", "{ a = 1 }", "inf", "-inf"),
-    *("nan", "1e308", "-1e308", "5e-324", "9223372036854775807", "9223372036854775808", "1e5", str(10**30), "1" * 5000),
-    *("1979-05-27", "07:32:00", "1979-05-27T07:32:00Z", "0x10", "0b1", "1_000", "[" * 200 + "]" * 200),
-    *("[" * 3000 + "]" * 3000, "{ a = " * 3000 + "1" + " }" * 3000, '"' + "a" * 100_000 + '"', "'''\n'''", '"\\u202e"'),
-    *('"\\u001b[31m"', '"normal"', '"uniform"', '"sobol"', "[0.1, inf]", "[nan]", "{ from = 1, to = 0 }", "[true]"),
-    *("{ from = 0, to = inf }", "{ distribution = 3 }", "{ std = 0 }", '{ distribution = "normal", std = 1e300 }'),
+    *(
+        "0",
+        "-1",
+        "1",
+        "1.5",
+        "true",
+        "false",
+        '""',
+        '"x"',
+        "[]",
+        "{}",
+        "[[]]",
+        "[1, 'a']",
+        "{ a = 1 }",
+        "inf",
+        "-inf",
+    ),
+    *(
+        "nan",
+        "1e308",
+        "-1e308",
+        "5e-324",
+        "9223372036854775807",
+        "9223372036854775808",
+        "1e5",
+        str(10**30),
+        "1" * 5000,
+    ),
+    *(
+        "1979-05-27",
+        "07:32:00",
+        "1979-05-27T07:32:00Z",
+        "0x10",
+        "0b1",
+        "1_000",
+        "[" * 200 + "]" * 200,
+    ),
+    *(
+        "[" * 3000 + "]" * 3000,
+        "{ a = " * 3000 + "1" + " }" * 3000,
+        '"' + "a" * 100_000 + '"',
+        "'''\n'''",
+        '"\\u202e"',
+    ),
+    *(
+        '"\\u001b[31m"',
+        '"normal"',
+        '"uniform"',
+        '"sobol"',
+        "[0.1, inf]",
+        "[nan]",
+        "{ from = 1, to = 0 }",
+        "[true]",
+    ),
+    *(
+        "{ from = 0, to = inf }",
+        "{ distribution = 3 }",
+        "{ std = 0 }",
+        '{ distribution = "normal", std = 1e300 }',
+    ),
 )
-LEAVES = r"build/study/((table\.(parquet|csv))|sensitivity\.(csv|png|svg|pdf)|costs\.csv|\.lock|units.*)"
+LEAVES = (
+    r"build/study/((table\.(parquet|csv))|sensitivity\.(csv|png|svg|pdf)|costs\.csv|\.lock|units.*)"
+)
 
 PLACE = "{0}(:[0-9]+: |: [^ :]+: |: not TOML)"
 """What is wrong has a line, is a key that is missing, or the end of the file."""
@@ -75,18 +131,30 @@ def trial(seed: int) -> Trial:
     rng = np.random.default_rng((2, seed))
     families = {f"families/{path.name}": path.read_bytes() for path in SHIPPED.glob("*.csv")}
     if seed % 3 == 2:
-        return _settings_trial(rng, families, "composite.toml" if seed % 6 == 5 else "simulation.toml")
+        return _settings_trial(
+            rng, families, "composite.toml" if seed % 6 == 5 else "simulation.toml"
+        )
 
     text = pick(rng, STUDIES)
     files = families | {"study.toml": toml_bytes(rng, text)}
     base = text.split('"')[1]
     place = PLACE.format(r"study\.toml")
-    return Trial(f"a spoilt study of {base}", ("study", "study.toml"), files, place, LEAVES, fresh=seed % 50 == 12)
+    return Trial(
+        f"a spoilt study of {base}",
+        ("study", "study.toml"),
+        files,
+        place,
+        LEAVES,
+        fresh=seed % 50 == 12,
+    )
 
 
 _COMMANDS = {
     "simulation.toml": (("tension", "plain"), ("shear", "basket22"), ("tension", "twill32")),
-    "composite.toml": (("voxels", "plain", "--cells", "6x6x6"), ("voxels", "twintex_tpeet44", "--cells", "5x5x5")),
+    "composite.toml": (
+        ("voxels", "plain", "--cells", "6x6x6"),
+        ("voxels", "twintex_tpeet44", "--cells", "5x5x5"),
+    ),
 }
 _ENDINGS = {"simulation.toml": ("--deck", "calculix"), "composite.toml": ()}
 
@@ -94,11 +162,15 @@ _ENDINGS = {"simulation.toml": ("--deck", "calculix"), "composite.toml": ()}
 def _settings_trial(rng: np.random.Generator, families: dict[str, bytes], name: str) -> Trial:
     """A command that reads a spoilt file beside the family tables."""
     command = (*pick(rng, _COMMANDS[name]), *_ENDINGS[name])
-    files = families | {f"families/{name}": toml_bytes(rng, (SHIPPED / name).read_text(encoding="utf-8"))}
+    files = families | {
+        f"families/{name}": toml_bytes(rng, (SHIPPED / name).read_text(encoding="utf-8"))
+    }
     place, leaves = PLACE.format(rf"families/{re.escape(name)}"), r"build/\w+/voxels\.(npz|vti)"
     title = f"{' '.join(command)} by a spoilt {name}"
     return (
-        Trial(title, command, files, place, leaves) if command[0] == "voxels" else Trial(title, command, files, place)
+        Trial(title, command, files, place, leaves)
+        if command[0] == "voxels"
+        else Trial(title, command, files, place)
     )
 
 
@@ -127,7 +199,15 @@ def _spoil_line(rng: np.random.Generator, text: str) -> str:
     elif kind == 4:
         odd = pick(
             rng,
-            (key.strip() + "x", key.strip().upper(), "a.b.c", '"' + key.strip() + '"', "''", '"\\u001b"', "x" * 500),
+            (
+                key.strip() + "x",
+                key.strip().upper(),
+                "a.b.c",
+                '"' + key.strip() + '"',
+                "''",
+                '"\\u001b"',
+                "x" * 500,
+            ),
         )
         lines[number] = f"{odd} ={value}"
     elif kind == 5:

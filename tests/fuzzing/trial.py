@@ -80,14 +80,18 @@ def run_trial(trial: Trial) -> Ended:
             for stream in (out, err):
                 stream.seek(0)
                 texts.append(stream.read().decode("utf-8", errors="replace"))
-        left = sorted(_tree(place) - before) + [f"(temp folder) {path}" for path in sorted(_tree(temporary))]
+        left = sorted(_tree(place) - before) + [
+            f"(temp folder) {path}" for path in sorted(_tree(temporary))
+        ]
         return Ended(status, texts[0], texts[1], seconds, tuple(left))
 
 
 def _tree(folder: Path) -> set[str]:
     """Every file of a folder, and every folder that holds none, as paths in it."""
     paths = [path for path in folder.rglob("*") if not path.is_dir() or not any(path.iterdir())]
-    return {os.fsencode(path.relative_to(folder)).decode(errors="backslashreplace") for path in paths}
+    return {
+        os.fsencode(path.relative_to(folder)).decode(errors="backslashreplace") for path in paths
+    }
 
 
 def faults(trial: Trial, ended: Ended) -> list[str]:
@@ -123,12 +127,18 @@ def tracebacks(text: str) -> list[str]:
 def _strange(text: str) -> list[str]:
     """Characters that a terminal obeys: controls but line breaks and tabs, and marks that turn its direction."""
     strange = {mark for mark in text if unicodedata.category(mark) == "Cc" and mark not in "\n\t"}
-    strange |= {mark for mark in text if unicodedata.bidirectional(mark) in ("LRO", "RLO", "LRE", "RLE", "LRI", "RLI")}
+    strange |= {
+        mark
+        for mark in text
+        if unicodedata.bidirectional(mark) in ("LRO", "RLO", "LRE", "RLE", "LRI", "RLI")
+    }
     return sorted(f"U+{ord(mark):04X}" for mark in strange)
 
 
 def _forked(trial: Trial, place: Path, temporary: Path, out: int, err: int) -> int | None:
-    process = fork_command(trial.arguments, place, temporary, out, err, trial.prepare, stop_before_cad)
+    process = fork_command(
+        trial.arguments, place, temporary, out, err, trial.prepare, stop_before_cad
+    )
     return wait(process, TIME_LIMIT)
 
 
@@ -156,7 +166,9 @@ def fork_command(
         os.dup2(out, 1)
         os.dup2(err, 2)
         sys.stdout = open(1, "w", encoding="utf-8", closefd=False)
-        sys.stderr = open(2, "w", encoding="utf-8", errors="backslashreplace", buffering=1, closefd=False)
+        sys.stderr = open(
+            2, "w", encoding="utf-8", errors="backslashreplace", buffering=1, closefd=False
+        )
         if prepare is not None:
             prepare()
         status = _status(arguments, around)
@@ -235,8 +247,16 @@ def _new_python(trial: Trial, place: Path, temporary: Path, out: int, err: int) 
     package = str(Path(fabric_cad.__file__).parents[1])
     environment = os.environ | {"TMPDIR": str(temporary), "PYTHONPATH": package}
     command = [sys.executable, "-m", "fabric_cad", *trial.arguments]
-    options = {"cwd": place, "env": environment, "stdin": subprocess.DEVNULL, "stdout": out, "stderr": err}
+    options = {
+        "cwd": place,
+        "env": environment,
+        "stdin": subprocess.DEVNULL,
+        "stdout": out,
+        "stderr": err,
+    }
     try:
-        return subprocess.run(command, timeout=TIME_LIMIT, preexec_fn=trial.prepare, **options).returncode
+        return subprocess.run(
+            command, timeout=TIME_LIMIT, preexec_fn=trial.prepare, **options
+        ).returncode
     except subprocess.TimeoutExpired:
         return None

@@ -46,7 +46,9 @@ def plain(tmp_path_factory):
 
 
 def run_twice(folder):
-    return subprocess.run([sys.executable, "-c", TWICE], cwd=folder, capture_output=True, text=True, timeout=300)
+    return subprocess.run(
+        [sys.executable, "-c", TWICE], cwd=folder, capture_output=True, text=True, timeout=300
+    )
 
 
 def test_a_master_runs_again_when_cq_editor_has_unloaded_what_it_imported(plain):
@@ -90,7 +92,11 @@ def test_a_section_can_be_replaced_and_cadquery_sweeps_near_the_exact_skin(plain
     assert symmetric["weft_1"].Volume() != exact["weft_1"].Volume()
 
     crossing = [
-        sum(cell[weft].intersect(cell[warp]).Volume() for weft in ("weft_1",) for warp in ("warp_1", "warp_2"))
+        sum(
+            cell[weft].intersect(cell[warp]).Volume()
+            for weft in ("weft_1",)
+            for warp in ("warp_1", "warp_2")
+        )
         for cell in (exact, near)
     ]
     furthest = max(

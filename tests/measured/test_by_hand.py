@@ -10,7 +10,13 @@ import fabric_cad
 from fabric_cad import ArgumentError, InputError, identify, measured_fabric
 from fabric_cad.measured.tables import MEASURED
 
-MINE = {"over": 2, "under": 2, "weft_density_per_mm": 0.35, "weft_width_mm": 2.4, "weft_crimp_percent": 0.4}
+MINE = {
+    "over": 2,
+    "under": 2,
+    "weft_density_per_mm": 0.35,
+    "weft_width_mm": 2.4,
+    "weft_crimp_percent": 0.4,
+}
 
 
 def test_a_fabric_from_numbers_is_the_row_of_a_table(here):
@@ -33,17 +39,29 @@ def test_a_fabric_from_numbers_is_the_row_of_a_table(here):
 )
 def test_every_family_and_kind_of_number(family, cells):
     measured = {"weft_density_per_cm": 3, "weft_width_mm": np.float32(2.5), "weft_crimp": None}
-    table = measured_fabric(family, **cells, **measured, weft_thickness_mm=0.3, weft_thickness_mm_std=0.01)
-    assert table.names == ("fabric",) and table.measured["weft_density_per_mm"][0] == pytest.approx(0.3)
-    assert len(identify(table)) == 1 and fabric_cad.propagate(table).std["fabric_thickness_mm"][0] > 0
+    table = measured_fabric(
+        family, **cells, **measured, weft_thickness_mm=0.3, weft_thickness_mm_std=0.01
+    )
+    assert table.names == ("fabric",) and table.measured["weft_density_per_mm"][0] == pytest.approx(
+        0.3
+    )
+    assert (
+        len(identify(table)) == 1 and fabric_cad.propagate(table).std["fabric_thickness_mm"][0] > 0
+    )
 
 
 @pytest.mark.parametrize(
     ("cells", "expected"),
     [
-        ({"weft_width_mm": 2.9}, "weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row mine)"),
+        (
+            {"weft_width_mm": 2.9},
+            "weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row mine)",
+        ),
         ({"weft_crimp_percent": -1}, "weft_crimp_percent: -1.0 is not above 0 (row mine)"),
-        ({"weft_crimp_percent": float("nan")}, "weft_crimp_percent: 'nan' is not a number (row mine)"),
+        (
+            {"weft_crimp_percent": float("nan")},
+            "weft_crimp_percent: 'nan' is not a number (row mine)",
+        ),
         ({"weft_width_mm": None}, "weft_width_mm: this cell is empty (row mine)"),
         ({"over": 0}, "over: 0 is not between 1 and 100 (row mine)"),
         ({"over": None}, "over: this cell is empty (row mine)"),
@@ -78,12 +96,16 @@ def test_the_rules_of_the_tables_hold(cells, expected):
 def test_arguments_of_the_wrong_kind(family, cells, expected):
     with pytest.raises(ArgumentError) as refused:
         measured_fabric(family, **MINE | cells)
-    assert str(refused.value).startswith(expected) and isinstance(refused.value, (TypeError, InputError))
+    assert str(refused.value).startswith(expected) and isinstance(
+        refused.value, (TypeError, InputError)
+    )
 
 
 def test_what_identification_refuses_names_the_keyword():
     cells = MINE | {"weft_crimp_percent": None}
-    with pytest.raises(InputError, match=r"^weft_crimp: this cell is empty, and so are .* \(row fabric\)$"):
+    with pytest.raises(
+        InputError, match=r"^weft_crimp: this cell is empty, and so are .* \(row fabric\)$"
+    ):
         identify(measured_fabric("twill", **cells))
 
 
@@ -114,7 +136,9 @@ def mesh():
 def test_a_mesh_for_pyvista(mesh):
     grid = mesh.to_pyvista()
     assert grid.n_cells == 3 and np.array_equal(grid.points, mesh.points)
-    assert grid.cell_data["yarn"].tolist() == [1, 1, 2] and grid.cell_data["direction"].tolist() == [0, 0, 1]
+    assert grid.cell_data["yarn"].tolist() == [1, 1, 2] and grid.cell_data[
+        "direction"
+    ].tolist() == [0, 0, 1]
     assert list(grid.field_data["yarn_names"]) == ["weft_1", "warp_1"]
     assert np.array_equal(grid.cell_data["fibre_axis"], mesh.fibre_axes())
     blocks = mesh.to_pyvista(surfaces=True)
@@ -141,5 +165,7 @@ def test_a_mesh_for_meshio(mesh, tmp_path):
 
 def test_meshio_is_asked_for_by_name(mesh, monkeypatch):
     monkeypatch.setitem(sys.modules, "meshio", None)
-    with pytest.raises(fabric_cad.MissingPackageError, match="needs the package meshio: pip install meshio"):
+    with pytest.raises(
+        fabric_cad.MissingPackageError, match="needs the package meshio: pip install meshio"
+    ):
         mesh.to_meshio()

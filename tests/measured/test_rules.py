@@ -26,7 +26,9 @@ CELLS = {
     "under": some.sampled_from([-1, 1, 2]),
     "harness": some.sampled_from([1, 2, 5, 6, 8, 200]),
     "step": some.sampled_from([0, 1, 2, 3, 6]),
-    "pattern": some.sampled_from(["ou/uo", "oo/uo", "ou", "oou/uo", "xo/ou", "/".join(["ou", "uo"] * 60)]),
+    "pattern": some.sampled_from(
+        ["ou/uo", "oo/uo", "ou", "oou/uo", "xo/ou", "/".join(["ou", "uo"] * 60)]
+    ),
 }
 OFTEN_SOUND = some.sampled_from([-1.0, 0.0, 0.05, 0.2, 1.0, 2.5, 3.0, 4.0, 6.0])
 
@@ -48,7 +50,9 @@ def test_reader_and_study_refuse_the_same_rows_for_the_same_reason(draw):
     numbers = draw.draw(some.dictionaries(some.sampled_from(MEASURED), OFTEN_SOUND, max_size=5))
     section = draw.draw(some.sampled_from(["lenticular", "round", "flat"]))
 
-    values = {name: np.array([value]) for name, value in (varied | numbers | {"section": section}).items()}
+    values = {
+        name: np.array([value]) for name, value in (varied | numbers | {"section": section}).items()
+    }
     _, refused = study_rows(table(family, base), Samples(values))
     asked = [(problem.column, problem.message) for problem in refused.values()]
 
@@ -59,7 +63,9 @@ def test_reader_and_study_refuse_the_same_rows_for_the_same_reason(draw):
     }
     answers = told(family, cells)
     of_weave = [answer for answer in answers if answer[0] in WEAVE_COLUMNS[family]]
-    assert asked == (of_weave or answers)[:1]  # a study tells one fault a row, of the weave before others
+    assert (
+        asked == (of_weave or answers)[:1]
+    )  # a study tells one fault a row, of the weave before others
 
 
 @pytest.mark.parametrize("column", ["warp_density_per_mm", "warp_width_mm"])
@@ -67,7 +73,9 @@ def test_a_direction_without_a_cell_is_told_alike_of_texts_and_of_numbers(column
     whole = table("plain", UNBALANCED)
     lacking = replace(whole, measured=whole.measured | {column: np.array([np.nan])})
     answers = told("plain", {name: value for name, value in UNBALANCED.items() if name != column})
-    assert [(problem.column, problem.message) for problem in out_of_bounds(lacking).values()] == answers
+    assert [
+        (problem.column, problem.message) for problem in out_of_bounds(lacking).values()
+    ] == answers
 
 
 @pytest.mark.parametrize("column", NUMBERS)

@@ -20,7 +20,12 @@ def test_twintex_rows_are_those_of_the_source(family, name, areal, thickness, st
     fabric = identify(row)[name]
     notes, source = row.notes[0], row.sources[0]
     assert "Cao et al. 2008" in source and "recalled" not in source + notes
-    assert "4.14 kPa" in notes and "Assumption" in notes and "Conflict" in notes and str(areal) in notes
+    assert (
+        "4.14 kPa" in notes
+        and "Assumption" in notes
+        and "Conflict" in notes
+        and str(areal) in notes
+    )
     assert fabric.fabric_thickness == pytest.approx(thickness, rel=1e-12)
     for direction in DIRECTIONS:
         assert row.scatter[f"{direction}_width_mm"][0] == std[direction]
@@ -30,7 +35,10 @@ def test_twintex_rows_are_those_of_the_source(family, name, areal, thickness, st
 def test_what_the_notes_compute_is_so(family, name, areal):
     row = read_family(shipped_families() / f"{family}.csv")[name]
     solved = identify(row).row(name)
-    mass = {d: row.measured[f"{d}_density_per_mm"][0] * row.measured[f"{d}_linear_density_tex"][0] for d in DIRECTIONS}
+    mass = {
+        d: row.measured[f"{d}_density_per_mm"][0] * row.measured[f"{d}_linear_density_tex"][0]
+        for d in DIRECTIONS
+    }
     if name == "twintex_tpeet22":
         crimps = [100 * (areal / (1870 * count) - 1) for count in (0.191 + 0.190, 0.195 + 0.195)]
         assert f"{min(crimps):.1f} to {max(crimps):.1f} %" in row.notes[0]

@@ -46,7 +46,11 @@ def test_a_sound_row_is_found_beside_wrong_ones(tmp_path):
     write(tmp_path, TOO_WIDE, GOOD, UNFINISHED, NO_FABRIC)
     row, others = find_row(tmp_path, "good")
     assert row.names == ("good",)
-    assert [problem.row for error in others for problem in error.problems] == ["wide", "unfinished", "unfinished"]
+    assert [problem.row for error in others for problem in error.problems] == [
+        "wide",
+        "unfinished",
+        "unfinished",
+    ]
     with pytest.raises(InputError) as refused:
         find_row(tmp_path, "unfinished")
     assert [(problem.line, problem.column) for problem in refused.value.problems] == [
@@ -61,7 +65,10 @@ def test_list_shows_sound_rows_and_names_the_wrong(here, capsys):
     printed = capsys.readouterr()
     rows = [line.split()[0] for line in printed.out.splitlines()]
     assert {"plain", "good", "satin8"} <= set(rows) and not {"wide", "thin"} & set(rows)
-    assert [line.split()[0] for line in printed.err.splitlines()] == ["families/twill.csv:2:", "families/twill.csv:4:"]
+    assert [line.split()[0] for line in printed.err.splitlines()] == [
+        "families/twill.csv:2:",
+        "families/twill.csv:4:",
+    ]
 
 
 @pytest.mark.parametrize("wrong", [TOO_WIDE, UNFINISHED, NO_FABRIC])
@@ -69,7 +76,8 @@ def test_a_wrong_row_stops_its_own_cell_only(here, capsys, monkeypatch, wrong):
     write("families", wrong, GOOD)
     made = []
     monkeypatch.setattr(
-        "fabric_cad.cell.pipeline.make_cell", lambda row, *rest: made.append(row.names) or {"warnings": []}
+        "fabric_cad.cell.pipeline.make_cell",
+        lambda row, *rest: made.append(row.names) or {"warnings": []},
     )
     monkeypatch.setattr("fabric_cad.cell.summary.summary", lambda report: "made")
     assert main(["cell", "good"]) == 0 and made == [("good",)]
@@ -97,7 +105,9 @@ def test_a_table_that_cannot_be_read_stops_no_other(here, capsys):
     assert "satin8" in printed.out and "families/twill.csv:1: ovr: unknown column" in printed.err
     with pytest.raises(InputError) as refused:  # it may hold the row
         find_row("families", "twill32")
-    assert "no row is called 'twill32'" in told(refused)[0] and "twill.csv:1: ovr" in told(refused)[1]
+    assert (
+        "no row is called 'twill32'" in told(refused)[0] and "twill.csv:1: ovr" in told(refused)[1]
+    )
 
 
 def test_a_name_that_stands_twice_is_no_row(tmp_path):
@@ -109,7 +119,9 @@ def test_a_name_that_stands_twice_is_no_row(tmp_path):
             find_row(tmp_path, name)
     tables = read_families(tmp_path, partial=True)
     assert tables["plain"].names == ("other",) and tables["twill"].names == ()
-    assert "twill.csv:2" in str(tables["plain"].refused[0]) and "plain.csv:2" in str(tables["twill"].refused[-1])
+    assert "twill.csv:2" in str(tables["plain"].refused[0]) and "plain.csv:2" in str(
+        tables["twill"].refused[-1]
+    )
 
 
 # ---- short rows
@@ -126,7 +138,9 @@ def test_a_row_of_a_name_only_lacks_its_cells(tmp_path, family):
 
 @pytest.mark.parametrize("family", WEAVE_COLUMNS)
 def test_every_beginning_of_a_row_is_read_or_refused(tmp_path, family, here):
-    first, row = [line for line in Path(f"families/{family}.csv").read_text().splitlines() if line[0] != "#"][:2]
+    first, row = [
+        line for line in Path(f"families/{family}.csv").read_text().splitlines() if line[0] != "#"
+    ][:2]
     for cells in range(1, row.count(",") + 2):
         path = write(tmp_path, ",".join(row.split(",")[:cells]), name=f"{family}.csv", header=first)
         table = read_family(path, partial=True)
@@ -162,7 +176,8 @@ def test_digits_of_other_scripts_are_no_numbers(tmp_path, digits):
 
 
 @pytest.mark.parametrize(
-    "option", [["study", "s.toml", "--workers"], ["cell", "plain", "--across"], ["cell", "plain", "--size"]]
+    "option",
+    [["study", "s.toml", "--workers"], ["cell", "plain", "--across"], ["cell", "plain", "--size"]],
 )
 @pytest.mark.parametrize("digits", ["٣", "1_0", "²", "nan"])
 def test_options_take_ascii_numbers_only(here, capsys, option, digits):
@@ -179,7 +194,11 @@ def test_text_with_a_byte_order_mark(tmp_path, encoding):
     mark = "\ufeff" if encoding.endswith("e") else ""
     path = write(tmp_path, f"{GOOD},naïve", header=f"{mark}{HEADER},notes", encoding=encoding)
     table = read_family(path)
-    assert table.names == ("good",) and table.notes == ("naïve",) and table.measured["weft_crimp"][0] == 0.004
+    assert (
+        table.names == ("good",)
+        and table.notes == ("naïve",)
+        and table.measured["weft_crimp"][0] == 0.004
+    )
 
 
 @pytest.mark.parametrize(
@@ -229,7 +248,9 @@ def test_files_nearly_called_as_tables_are_named(tmp_path, capsys, name, meant):
         read_family(tmp_path / name)
 
 
-@pytest.mark.parametrize("name", ["simulation.toml", "notes.txt", "~$twill.xlsx", ".~lock.twill.ods#", "knit.csv"])
+@pytest.mark.parametrize(
+    "name", ["simulation.toml", "notes.txt", "~$twill.xlsx", ".~lock.twill.ods#", "knit.csv"]
+)
 def test_other_files_are_left_alone(here, capsys, name):
     Path("families", name).write_text("") if name != "simulation.toml" else None
     assert main(["list"]) == 0
@@ -246,7 +267,9 @@ def test_tables_are_iterated_and_asked(here):
     for table in (family, identify(family)):
         assert "plain" in table and "no" not in table and table.names[0] == "plain"
         assert len(list(table)) == len(table) == len(table.names)
-        with pytest.raises(UnknownRowError, match="no row is called 'plane'; did you mean plain") as unknown:
+        with pytest.raises(
+            UnknownRowError, match="no row is called 'plane'; did you mean plain"
+        ) as unknown:
             table["plane"]
         assert isinstance(unknown.value, KeyError) and isinstance(unknown.value, InputError)
         with pytest.raises(ArgumentError, match="named by a text, not int 3"):

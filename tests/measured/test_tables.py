@@ -7,7 +7,8 @@ from fabric_cad.measured.tables import MEASURED, read_families, read_family
 from fabric_cad.support.errors import InputError
 
 HEADER = (
-    "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp,warp_density_per_mm,warp_width_mm,warp_crimp,notes"
+    "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp,"
+    "warp_density_per_mm,warp_width_mm,warp_crimp,notes"
 )
 ROW = "t32,3,2,0.35,2.4,0.004,,,,a note"
 
@@ -53,7 +54,11 @@ def test_every_dialect_reads_the_same(tmp_path, text):
     table = read_family(write(tmp_path, text))
     assert table.names == ("t32",) and table.notes == ("a note",)
     assert (table.weaves[0].over, table.weaves[0].under) == (3, 2)
-    assert [table.measured[f"weft_{q}"][0] for q in ("density_per_mm", "width_mm", "crimp")] == [0.35, 2.4, 0.004]
+    assert [table.measured[f"weft_{q}"][0] for q in ("density_per_mm", "width_mm", "crimp")] == [
+        0.35,
+        2.4,
+        0.004,
+    ]
     assert table.balanced.all()
     given = {"weft_density_per_mm", "weft_width_mm", "weft_crimp"}
     assert all(np.isnan(table.measured[column][0]) for column in MEASURED if column not in given)
@@ -75,7 +80,9 @@ def test_other_units_of_density(tmp_path, column, cell, kept, value):
 
 def test_line_numbers_are_those_of_the_file(tmp_path):
     text = f'# one\n\n{HEADER}\n{ROW[:-6]}"a note\nof two lines"\n# six\nbad,3,2,x,2.4,0.004,,,,\n'
-    assert problems(tmp_path, text) == ["twill.csv:7: weft_density_per_mm: 'x' is not a number (row bad)"]
+    assert problems(tmp_path, text) == [
+        "twill.csv:7: weft_density_per_mm: 'x' is not a number (row bad)"
+    ]
 
 
 def bad(cells: dict) -> str:
@@ -104,7 +111,10 @@ def bad(cells: dict) -> str:
             {"weft_width_mm": "2,4"},
             "twill.csv:2: 11 cells where the header has 10 (a decimal comma needs ';' as the separator) (row t32)",
         ),
-        ({"weft_width_mm": "2.9"}, "twill.csv:2: weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row t32)"),
+        (
+            {"weft_width_mm": "2.9"},
+            "twill.csv:2: weft_width_mm: 2.9 is not below the weft spacing 2.857 mm (row t32)",
+        ),
         (
             {"warp_width_mm": "2.5"},
             "twill.csv:2: warp_density_per_mm: this cell is empty "
@@ -120,7 +130,9 @@ def test_one_wrong_cell_one_clear_message(tmp_path, cells, expected):
     assert problems(tmp_path, bad(cells)) == [expected]
 
 
-@pytest.mark.parametrize("name", ["../up", "a b", "a/b", "-q", "naïve", "NUL", "families", "x" * 81, "a.b"])
+@pytest.mark.parametrize(
+    "name", ["../up", "a b", "a/b", "-q", "naïve", "NUL", "families", "x" * 81, "a.b"]
+)
 def test_names_are_safe_file_names(tmp_path, name):
     (problem,) = problems(tmp_path, bad({"name": name}))
     assert problem.startswith(f"twill.csv:2: name: '{name}' is no safe file name")
@@ -147,8 +159,14 @@ def test_everything_wrong_in_a_table_is_listed(tmp_path):
 @pytest.mark.parametrize(
     ("header", "expected"),
     [
-        ("weft_widht_mm", "twill.csv:1: weft_widht_mm: unknown column of twill.csv; did you mean weft_width_mm?"),
-        ("Weft_Crimp", "twill.csv:1: Weft_Crimp: unknown column of twill.csv; did you mean weft_crimp?"),
+        (
+            "weft_widht_mm",
+            "twill.csv:1: weft_widht_mm: unknown column of twill.csv; did you mean weft_width_mm?",
+        ),
+        (
+            "Weft_Crimp",
+            "twill.csv:1: Weft_Crimp: unknown column of twill.csv; did you mean weft_crimp?",
+        ),
         ("over", "twill.csv:1: over: this column stands twice in the header"),
         ("harness", "twill.csv:1: harness: unknown column of twill.csv; did you mean"),
     ],
@@ -203,7 +221,11 @@ def test_a_header_alone_is_a_table_of_no_rows(tmp_path):
 
 
 def test_names_are_unique_over_all_tables(tmp_path):
-    write(tmp_path, "name,weft_density_per_mm,weft_width_mm,weft_crimp\nt32,0.2,3,0.004\n", "plain.csv")
+    write(
+        tmp_path,
+        "name,weft_density_per_mm,weft_width_mm,weft_crimp\nt32,0.2,3,0.004\n",
+        "plain.csv",
+    )
     write(tmp_path, f"{HEADER}\nT32{ROW[3:]}\n")
     tables = read_families(tmp_path)
     (problem,) = tables["twill"].problems

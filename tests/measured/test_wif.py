@@ -25,7 +25,9 @@ def draft(**sections):
         "TREADLING": "\n".join(f"{k + 1}={k % 4 + 1}" for k in numbers),
     }
     parts |= {name.replace("_", " ").upper(): text for name, text in sections.items()}
-    return "\n\n".join(f"[{name}]\n{text}" for name, text in parts.items() if text is not None) + "\n"
+    return (
+        "\n\n".join(f"[{name}]\n{text}" for name, text in parts.items() if text is not None) + "\n"
+    )
 
 
 LIFTPLAN = "\n".join(f"{k + 1}={k % 4 + 1},{(k + 1) % 4 + 1}" for k in range(8))
@@ -60,7 +62,12 @@ def test_several_treadles_at_once_are_all_their_shafts(read):
 
 def test_a_warp_on_two_shafts_rises_with_either(read):
     two = "\n".join(f"{k + 1}={k % 4 + 1},{(k + 1) % 4 + 1}" for k in range(8))
-    assert read(draft(tieup="1=1\n2=2\n3=3\n4=4", threading=two)) == ("0110", "0011", "1001", "1100")
+    assert read(draft(tieup="1=1\n2=2\n3=3\n4=4", threading=two)) == (
+        "0110",
+        "0011",
+        "1001",
+        "1100",
+    )
 
 
 @pytest.mark.parametrize("threads", [8, 9, 11])
@@ -75,7 +82,9 @@ def test_a_draft_that_is_no_whole_repeat_of_less_is_kept(read):
 
 
 def test_what_programs_write_differently(read):
-    text = draft(notes="1=a note\n; a comment\nno value here\n1=another", color_table="1=0,0,0\n1=9,9,9")
+    text = draft(
+        notes="1=a note\n; a comment\nno value here\n1=another", color_table="1=0,0,0\n1=9,9,9"
+    )
     for other in (
         text.replace("\n", "\r\n"),
         "\ufeff" + text,
@@ -92,7 +101,8 @@ def test_what_programs_write_differently(read):
         text.replace("[WEFT]\nThreads=8", ""),
         text.replace("[THREADING]\n", "[THREADING]\n9=0\n"),  # no thread, on no shaft
         text.replace("[TEXT]\n", "[TEXT]\n[WARP COLORS] default = 3\nfree text\n"),
-        text + "[WARP]\n\n[LIFTPLAN]\n[TIEUP]\n1=1,2\n[THREADING]\n1=\n",  # blank, and the same again
+        text
+        + "[WARP]\n\n[LIFTPLAN]\n[TIEUP]\n1=1,2\n[THREADING]\n1=\n",  # blank, and the same again
         text + "\x1a",
     ):
         assert read(other) == TWILL22
@@ -107,32 +117,59 @@ def test_what_programs_write_differently(read):
         ("name,over\n", "draft.wif:1: not a weaving draft: this line comes before any [SECTION]"),
         (draft(wif=None), "draft.wif: not a weaving draft: it has no section [WIF]"),
         (draft(weft="Threads=many"), "draft.wif:26: [WEFT] Threads: 'many' is not a whole number"),
-        (draft(weft="Threads=1000000"), "draft.wif:26: [WEFT] Threads: 1000000 is not between 1 and 5000"),
+        (
+            draft(weft="Threads=1000000"),
+            "draft.wif:26: [WEFT] Threads: 1000000 is not between 1 and 5000",
+        ),
         (draft(threading=None), "draft.wif: [THREADING]: this section is missing or empty"),
         (
             draft(warp="Threads=10"),
             "draft.wif:26: [THREADING]: thread 9 of 10 hangs on no shaft: warp 9 passes under every yarn and never "
             "interlaces, nor do 1 more; write [WARP] Threads=8 if the draft ends there",
         ),
-        (draft(warp="Threads=7"), "draft.wif:34: [THREADING] 8: this is no thread; the draft has 7 of them"),
-        (draft(treadling=None), "draft.wif: [TREADLING]: this section is missing or empty, and there is no [LIFTPLAN]"),
+        (
+            draft(warp="Threads=7"),
+            "draft.wif:34: [THREADING] 8: this is no thread; the draft has 7 of them",
+        ),
+        (
+            draft(treadling=None),
+            "draft.wif: [TREADLING]: this section is missing or empty, and there is no [LIFTPLAN]",
+        ),
         (draft(tieup=None), "draft.wif: [TIEUP]: this section is missing or empty"),
-        (draft(tieup="1=1,2\n2=2,3\n3=3,4"), "draft.wif:47: [TREADLING] 4: treadle 4 is not in [TIEUP]"),
-        (draft(tieup="1=1;2\n2=2,3\n3=3,4\n4=4,1"), "draft.wif:39: [TIEUP] 1: '1;2' is not a list of whole numbers"),
+        (
+            draft(tieup="1=1,2\n2=2,3\n3=3,4"),
+            "draft.wif:47: [TREADLING] 4: treadle 4 is not in [TIEUP]",
+        ),
+        (
+            draft(tieup="1=1;2\n2=2,3\n3=3,4\n4=4,1"),
+            "draft.wif:39: [TIEUP] 1: '1;2' is not a list of whole numbers",
+        ),
         (draft(tieup="1=1,-2"), "draft.wif:39: [TIEUP] 1: '1,-2' is not a list of whole numbers"),
         (draft(tieup="one=1"), "draft.wif:39: [TIEUP] One: this key is not a number"),
         (draft(tieup="0=1"), "draft.wif:39: [TIEUP] 0: numbers count from 1"),
         (draft(tieup="1"), "draft.wif:39: [TIEUP]: not a line of the form KEY=VALUE"),
-        (draft(weaving="Rising Shed=perhaps"), "[WEAVING] Rising Shed: 'perhaps' is neither true nor false"),
-        (draft(tieup="1=1\n1=2"), "draft.wif:40: [TIEUP] 1: this key stands twice, at line 39 as '1'"),
+        (
+            draft(weaving="Rising Shed=perhaps"),
+            "[WEAVING] Rising Shed: 'perhaps' is neither true nor false",
+        ),
+        (
+            draft(tieup="1=1\n1=2"),
+            "draft.wif:40: [TIEUP] 1: this key stands twice, at line 39 as '1'",
+        ),
         (draft(tieup="1=1\n01=2"), "draft.wif:40: [TIEUP] 01: this key stands twice"),
-        (draft() + "[WARP]\nThreads=9\n", "[WARP] Threads: this key stands twice, at line 21 as '8'"),
+        (
+            draft() + "[WARP]\nThreads=9\n",
+            "[WARP] Threads: this key stands twice, at line 21 as '8'",
+        ),
         (
             draft(tieup="1=1,2\n2=2,3\n3=3,4\n4=0"),
             "draft.wif:48: [TREADLING] 4: pick 4 of 8 moves no shaft: weft 4 passes over every yarn and never "
             "interlaces, nor do 1 more",
         ),
-        (draft(tieup="1=1,2\n2=2,3\n3=1,2,3,4\n4=1"), "weft 3 passes under every yarn and never interlaces"),
+        (
+            draft(tieup="1=1,2\n2=2,3\n3=1,2,3,4\n4=1"),
+            "weft 3 passes under every yarn and never interlaces",
+        ),
         (
             draft(tieup="1=1\n2=3\n3=1\n4=3"),
             "draft.wif:30: [THREADING] 2: no pick moves shaft 2: warp 2 passes under every yarn and never interlaces",
@@ -142,7 +179,9 @@ def test_what_programs_write_differently(read):
             "draft.wif:41: [TIEUP] 3: shaft 5 is beyond the 4 of [WEAVING] Shafts",
         ),
         (
-            draft(weaving="Shafts=3", threading="\n".join(f"{k + 1}={k % 4 + 1}" for k in range(8))),
+            draft(
+                weaving="Shafts=3", threading="\n".join(f"{k + 1}={k % 4 + 1}" for k in range(8))
+            ),
             "draft.wif:30: [THREADING] 4: shaft 4 is beyond the 3 of [WEAVING] Shafts",
         ),
         (draft(liftplan="1=1,9\n2=2"), "[LIFTPLAN] 1: shaft 9 is beyond the 4 of [WEAVING] Shafts"),
@@ -160,14 +199,17 @@ def test_what_is_wrong_is_told_with_its_place(read, text, expected):
 
 def test_a_repeat_larger_than_a_table_takes(read):
     cells = "\n".join(f"{k + 1}={k % 2 + 1 if k != 5 else 3}" for k in range(120))
-    with pytest.raises(InputError, match="its repeat of 4 wefts x 120 warps is more than 100 in a direction"):
+    with pytest.raises(
+        InputError, match="its repeat of 4 wefts x 120 warps is more than 100 in a direction"
+    ):
         read(draft(warp="Threads=120", threading=cells))
 
 
 def test_an_unlisted_pick_between_others_lifts_nothing(read):
     picks = "\n".join(f"{k + 1}={k % 4 + 1}" for k in range(8) if k != 4)
     with pytest.raises(
-        InputError, match=r"\[TREADLING\]: pick 5 of 8 moves no shaft: weft 5 passes over .*interlaces$"
+        InputError,
+        match=r"\[TREADLING\]: pick 5 of 8 moves no shaft: weft 5 passes over .*interlaces$",
     ):
         read(draft(treadling=picks))
     with pytest.raises(InputError, match="weft 5 passes under every yarn"):
@@ -193,7 +235,9 @@ def cells_of(folder, **sections):
     ],
 )
 def test_spacings_are_densities(tmp_path, text, per_mm):
-    cells = cells_of(tmp_path, warp=f"Threads=8\n{text}", weft="Threads=8\nUnits=inches\nSpacing=0.1")
+    cells = cells_of(
+        tmp_path, warp=f"Threads=8\n{text}", weft="Threads=8\nUnits=inches\nSpacing=0.1"
+    )
     assert float(cells["warp_density_per_mm"]) == pytest.approx(per_mm, rel=1e-3)
     assert float(cells["weft_density_per_mm"]) == pytest.approx(1 / 2.54, rel=1e-5)
     assert cells["warp_thickness_mm"] == cells["weft_thickness_mm"] == cells["notes"] == ""
@@ -220,9 +264,18 @@ def test_a_spacing_in_no_unit_is_noted_and_no_density(tmp_path):
 @pytest.mark.parametrize(
     ("warp", "words"),
     [
-        ("Threads=8\nUnits=furlongs\nSpacing=1", ":22: [WARP] Units: 'furlongs' is none of decipoints, inches and"),
-        ("Threads=8\nUnits=inches\nSpacing=wide", ":23: [WARP] Spacing: 'wide' is not a number above 0"),
-        ("Threads=8\nUnits=inches\nSpacing=-1", ":23: [WARP] Spacing: '-1' is not a number above 0"),
+        (
+            "Threads=8\nUnits=furlongs\nSpacing=1",
+            ":22: [WARP] Units: 'furlongs' is none of decipoints, inches and",
+        ),
+        (
+            "Threads=8\nUnits=inches\nSpacing=wide",
+            ":23: [WARP] Spacing: 'wide' is not a number above 0",
+        ),
+        (
+            "Threads=8\nUnits=inches\nSpacing=-1",
+            ":23: [WARP] Spacing: '-1' is not a number above 0",
+        ),
     ],
 )
 def test_a_spacing_that_cannot_be_read_is_told_with_its_line(tmp_path, warp, words):
@@ -239,13 +292,18 @@ def test_the_command_prints_a_row_that_the_table_takes(tmp_path, capsys, monkeyp
     assert row.startswith("mine,uuoo/ouuo/oouu/uoou,0.4,")
     cells = dict(zip(header.split(","), row.split(","), strict=True))
     cells |= {
-        f"{d}_{name}": value for d in ("weft", "warp") for name, value in (("width_mm", "1.6"), ("crimp", "0.01"))
+        f"{d}_{name}": value
+        for d in ("weft", "warp")
+        for name, value in (("width_mm", "1.6"), ("crimp", "0.01"))
     }
     cells |= {"weft_thickness_mm": "0.3"}
     (tmp_path / "pattern.csv").write_text(f"{header}\n{','.join(cells.values())}\n")
     table = read_family("pattern.csv")["mine"]
     assert table.weaves[0].pattern == TWILL22
-    assert (table.measured["weft_density_per_mm"][0], table.measured["warp_density_per_mm"][0]) == (0.4, 0.5)
+    assert (table.measured["weft_density_per_mm"][0], table.measured["warp_density_per_mm"][0]) == (
+        0.4,
+        0.5,
+    )
 
 
 @pytest.mark.parametrize(

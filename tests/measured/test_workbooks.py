@@ -21,7 +21,16 @@ from fabric_cad.model.identification import identify
 from fabric_cad.support.errors import InputError
 from fabric_cad.weave.weaves import FAMILIES
 
-HEADER = ["name", "over", "under", "weft_density_per_mm", "weft_width_mm", "weft_crimp", "warp_crimp", "notes"]
+HEADER = [
+    "name",
+    "over",
+    "under",
+    "weft_density_per_mm",
+    "weft_width_mm",
+    "weft_crimp",
+    "warp_crimp",
+    "notes",
+]
 ROW = ["t32", 3, 2, 0.35, 2.4, 0.004, None, "a note"]
 
 
@@ -85,11 +94,16 @@ def test_a_workbook_is_its_csv(here, write, family):
     import csv
 
     def cell(column, text):
-        number = column not in ("name", "pattern", "section", "float_gap", "thicker", "source", "notes") and text
+        number = (
+            column not in ("name", "pattern", "section", "float_gap", "thicker", "source", "notes")
+            and text
+        )
         return (float(text) if number else text) or None
 
     path = Path(f"families/{family}.csv")
-    comment, header, *rows = csv.reader(path.read_text().splitlines()[-len(read_family(path)) - 2 :])
+    comment, header, *rows = csv.reader(
+        path.read_text().splitlines()[-len(read_family(path)) - 2 :]
+    )
     rows = [[cell(column, text) for column, text in zip(header, row)] for row in rows]
     book = write(path_of(here, write, family), comment, [], header, *rows, ["# the end"])
 
@@ -106,12 +120,28 @@ def test_a_workbook_is_its_csv(here, write, family):
 @pytest.mark.parametrize(
     ("column", "value", "expected"),
     [
-        ("weft_width_mm", 3.1, "E2: weft_width_mm: 3.1 is not below the weft spacing 2.857 mm (row t32)"),
+        (
+            "weft_width_mm",
+            3.1,
+            "E2: weft_width_mm: 3.1 is not below the weft spacing 2.857 mm (row t32)",
+        ),
         ("weft_crimp", -1, "F2: weft_crimp: -1 is not above 0 (row t32)"),
-        ("weft_crimp", "0,004", "F2: weft_crimp: 0,004 has a decimal comma and so is a text; write 0.004 (row t32)"),
+        (
+            "weft_crimp",
+            "0,004",
+            "F2: weft_crimp: 0,004 has a decimal comma and so is a text; write 0.004 (row t32)",
+        ),
         ("weft_crimp", "x", "F2: weft_crimp: 'x' is not a number (row t32)"),
-        ("weft_crimp", True, "F2: weft_crimp: TRUE is a truth value; enter a number or a text (row t32)"),
-        ("weft_crimp", datetime.date(2026, 4, 1), "F2: weft_crimp: 2026-04-01 is a date, which spreadsheets make of"),
+        (
+            "weft_crimp",
+            True,
+            "F2: weft_crimp: TRUE is a truth value; enter a number or a text (row t32)",
+        ),
+        (
+            "weft_crimp",
+            datetime.date(2026, 4, 1),
+            "F2: weft_crimp: 2026-04-01 is a date, which spreadsheets make of",
+        ),
         ("over", 2.5, "B2: over: '2.5' is not a whole number (row t32)"),
         ("name", None, "A2: name: the row has no name"),
         ("under", None, "C2: under: this cell is empty (row t32)"),
@@ -136,7 +166,11 @@ def test_whole_numbers_names_and_free_texts(tmp_path, write):
     row = [22, 3.0, "2", 0.35, "2.4", 0.004, None, datetime.date(2026, 4, 1)]
     table = read_family(write(path_of(tmp_path, write), HEADER, row))
     assert table.names == ("22",) and table.notes == ("2026-04-01",)
-    assert (table.weaves[0].over, table.weaves[0].under, table.measured["weft_width_mm"][0]) == (3, 2, 2.4)
+    assert (table.weaves[0].over, table.weaves[0].under, table.measured["weft_width_mm"][0]) == (
+        3,
+        2,
+        2.4,
+    )
 
 
 @KINDS
@@ -144,7 +178,10 @@ def test_patterns_entered_as_numbers_are_refused(tmp_path, write):
     header = ["name", "pattern", "weft_density_per_mm", "weft_width_mm", "weft_crimp"]
     path = write(path_of(tmp_path, write, "pattern"), header, ["p", 11001100, 0.35, 2.4, 0.004])
     (problem,) = told(path)
-    assert "sheet1!B2: pattern: 11001100 is a number, of which a spreadsheet drops the zeros" in problem
+    assert (
+        "sheet1!B2: pattern: 11001100 is a number, of which a spreadsheet drops the zeros"
+        in problem
+    )
     path = write(path, header, ["p", datetime.date(2026, 10, 1), 0.35, 2.4, 0.004])
     assert "is a date" in told(path)[0]
 
@@ -199,8 +236,14 @@ SHEET = "xl/worksheets/sheet1.xml"
     ("cell", "expected"),
     [
         ('<c r="F2"><f>2/500</f><v>0.004</v></c>', None),
-        ('<c r="F2"><f>2/500</f><v></v></c>', "F2: weft_crimp: the formula has no stored value; open the workbook"),
-        ('<c r="F2" t="e"><f>1/0</f><v>#DIV/0!</v></c>', "F2: weft_crimp: the cell holds the error #DIV/0!"),
+        (
+            '<c r="F2"><f>2/500</f><v></v></c>',
+            "F2: weft_crimp: the formula has no stored value; open the workbook",
+        ),
+        (
+            '<c r="F2" t="e"><f>1/0</f><v>#DIV/0!</v></c>',
+            "F2: weft_crimp: the cell holds the error #DIV/0!",
+        ),
         ('<c r="F2" t="e"><v>#N/A</v></c>', "F2: weft_crimp: the cell holds the error #N/A"),
         ('<c r="F2" t="str"><f>"0.0"&amp;"04"</f><v>0.004</v></c>', None),
     ],
@@ -215,9 +258,13 @@ def test_formulas_count_with_their_stored_value(tmp_path, cell, expected):
 
 def test_an_error_in_an_optional_cell_is_not_an_empty_one(tmp_path):
     """python-calamine reads both alike; a fabric would be another without the cell."""
-    path = xlsx(tmp_path / "twill.xlsx", HEADER, ROW, change=lambda sheet: sheet.__setitem__("G2", "#REF!"))
+    path = xlsx(
+        tmp_path / "twill.xlsx", HEADER, ROW, change=lambda sheet: sheet.__setitem__("G2", "#REF!")
+    )
     path = edited(path, SHEET, (r'<c r="G2".*?</c>', '<c r="G2" t="e"><v>#REF!</v></c>'))
-    assert "twill.xlsx: sheet1!G2: warp_crimp: the cell holds the error #REF! (row t32)" in told(path)
+    assert "twill.xlsx: sheet1!G2: warp_crimp: the cell holds the error #REF! (row t32)" in told(
+        path
+    )
 
     def error(sheet):
         line = TableRow()
@@ -229,7 +276,9 @@ def test_an_error_in_an_optional_cell_is_not_an_empty_one(tmp_path):
         sheet.addElement(line)
 
     path = ods(tmp_path / "twill.ods", HEADER, change=error)
-    assert "twill.ods: sheet1!G2: warp_crimp: the cell holds the error #DIV/0! (row t32)" in told(path)
+    assert "twill.ods: sheet1!G2: warp_crimp: the cell holds the error #DIV/0! (row t32)" in told(
+        path
+    )
 
 
 def test_percentages(tmp_path):
@@ -248,7 +297,9 @@ def test_percentages(tmp_path):
 def test_merged_cells(tmp_path):
     """A title over the table may be merged, and what is free text; a number belongs to one cell."""
     rows = (["# Twills"], HEADER, ROW, ["u32", *ROW[1:]])
-    table = read_family(xlsx(tmp_path / "twill.xlsx", *rows, change=lambda sheet: sheet.merge_cells("A1:H1")))
+    table = read_family(
+        xlsx(tmp_path / "twill.xlsx", *rows, change=lambda sheet: sheet.merge_cells("A1:H1"))
+    )
     assert table.names == ("t32", "u32")
     path = xlsx(tmp_path / "twill.xlsx", *rows, change=lambda sheet: sheet.merge_cells("H3:H4"))
     assert read_family(path).notes == ("a note", "")
@@ -270,7 +321,15 @@ def test_merged_cells(tmp_path):
 def test_surplus_cells_and_columns_far_out(tmp_path):
     path = xlsx(tmp_path / "twill.xlsx", HEADER, [*ROW, None, 7])
     assert told(path) == ["twill.xlsx: sheet1 row 2: 10 cells where the header has 8 (row t32)"]
-    assert [letters_of(n) for n in (0, 25, 26, 51, 52, 701, 702)] == ["A", "Z", "AA", "AZ", "BA", "ZZ", "AAA"]
+    assert [letters_of(n) for n in (0, 25, 26, 51, 52, 701, 702)] == [
+        "A",
+        "Z",
+        "AA",
+        "AZ",
+        "BA",
+        "ZZ",
+        "AAA",
+    ]
 
 
 # ---- folders
@@ -282,7 +341,9 @@ def test_every_command_reads_workbooks(here, capsys, write):
     write(path_of("families", write), HEADER, ROW, ["wide", *bad("weft_width_mm", 3.1)[1:]])
     assert main(["list"]) == 2
     printed = capsys.readouterr()
-    assert "twill 3*2" in printed.out and "sheet1!E3: weft_width_mm: 3.1 is not below" in printed.err
+    assert (
+        "twill 3*2" in printed.out and "sheet1!E3: weft_width_mm: 3.1 is not below" in printed.err
+    )
     assert main(["validate"]) == 2
 
 
@@ -300,7 +361,10 @@ def test_init_keeps_a_workbook_in_place_of_a_table(tmp_path, monkeypatch, capsys
     Path("families").mkdir()
     xlsx(Path("families/twill.xlsx"), HEADER, ROW)
     assert main(["init"]) == 0
-    assert "families/twill.xlsx: kept" in capsys.readouterr().out and not Path("families/twill.csv").exists()
+    assert (
+        "families/twill.xlsx: kept" in capsys.readouterr().out
+        and not Path("families/twill.csv").exists()
+    )
     assert main(["list"]) == 0
 
 
@@ -320,12 +384,18 @@ def zipped(**files):
     [
         (b"", "cannot be read as a workbook: File is not a zip file"),
         (b"name,over\nt,3\n", "cannot be read as a workbook: File is not a zip file"),
-        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "an old workbook (.xls), or one protected by a password"),
+        (
+            b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600),
+            "an old workbook (.xls), or one protected by a password",
+        ),
         (zipped(a="b"), "cannot be read as a workbook: it has no part"),
         (zipped(content_xml="<a>"), "cannot be read as a workbook: no element found"),
         (zipped(content_xml="<a/>"), "cannot be read as a workbook"),
         (zipped(a=bytes(LARGEST + 1)), "unpacks to 50 MB; a family table has at most 50"),
-        (zipped(content_xml="x", **{"META-INF__manifest_xml": "<encryption-data/>"}), "protected by a password"),
+        (
+            zipped(content_xml="x", **{"META-INF__manifest_xml": "<encryption-data/>"}),
+            "protected by a password",
+        ),
     ],
 )
 @pytest.mark.parametrize("kind", ["xlsx", "ods"])
@@ -353,8 +423,16 @@ def test_damaged_workbooks(tmp_path, write):
 
 def test_a_value_in_the_last_cell_of_a_sheet(tmp_path):
     """Which would be 17 thousand million cells to read."""
-    path = xlsx(tmp_path / "twill.xlsx", HEADER, ROW, change=lambda sheet: sheet.__setitem__("XFD1048576", 1))
-    assert "row 1048576 and in column number 16384 is larger than a family table can be" in told(path)[0]
+    path = xlsx(
+        tmp_path / "twill.xlsx",
+        HEADER,
+        ROW,
+        change=lambda sheet: sheet.__setitem__("XFD1048576", 1),
+    )
+    assert (
+        "row 1048576 and in column number 16384 is larger than a family table can be"
+        in told(path)[0]
+    )
 
     def repeated(sheet):
         line = TableRow(numberrowsrepeated="1048000")

@@ -50,7 +50,10 @@ def test_views_number_the_yarns_and_show_it_as_none(mesh, tmp_path):
 
     write_vtu(mesh, mesh_quality(mesh), tmp_path / "cell.vtu")
     grid = pyvista.read(tmp_path / "cell.vtu")
-    assert [set(grid.cell_data[name].tolist()) for name in ("yarn", "direction")] == [{0, 1, 2}, {-1, 0, 1}]
+    assert [set(grid.cell_data[name].tolist()) for name in ("yarn", "direction")] == [
+        {0, 1, 2},
+        {-1, 0, 1},
+    ]
     assert (grid.cell_data["yarn"] == np.array([1, 0, 2])[mesh.body]).all()
 
     draw_cell(mesh, tmp_path / "cell.png", "three bodies")
@@ -62,7 +65,9 @@ def test_views_number_the_yarns_and_show_it_as_none(mesh, tmp_path):
 
 def test_a_report_counts_its_hexahedra(mesh):
     fabric = identify(table("twill", TWILL32))["twill32"]
-    figures = mesh_figures(fabric, SimpleNamespace(mesh=mesh, quality=mesh_quality(mesh), allowed=1.0))
+    figures = mesh_figures(
+        fabric, SimpleNamespace(mesh=mesh, quality=mesh_quality(mesh), allowed=1.0)
+    )
     assert figures.hexahedra == len(mesh.hexahedra) and figures.other_elements == 0
     ends = sum(len(mesh.nodes_of(yarn, "start")) for yarn in mesh.yarns)
     assert figures.end_nodes == ends

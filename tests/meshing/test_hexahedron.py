@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fabric_cad.meshing.hexahedron import CORNERS, EDGES, FACES, LENGTHWISE, hexahedra_volumes, shape_slopes
+from fabric_cad.meshing.hexahedron import (
+    CORNERS,
+    EDGES,
+    FACES,
+    LENGTHWISE,
+    hexahedra_volumes,
+    shape_slopes,
+)
 
 
 def test_edges_join_corners_along_their_axis():
@@ -47,7 +54,9 @@ def test_the_volume_of_a_warped_hexahedron_is_what_its_faces_enclose(seed):
         for s in (1 - 1 / np.sqrt(3), 1 + 1 / np.sqrt(3)):
             for t in (1 - 1 / np.sqrt(3), 1 + 1 / np.sqrt(3)):
                 s_half, t_half = s / 2, t / 2
-                place = (1 - s_half) * ((1 - t_half) * a + t_half * d) + s_half * ((1 - t_half) * b + t_half * c)
+                place = (1 - s_half) * ((1 - t_half) * a + t_half * d) + s_half * (
+                    (1 - t_half) * b + t_half * c
+                )
                 by_s = (1 - t_half) * (b - a) + t_half * (c - d)
                 by_t = (1 - s_half) * (d - a) + s_half * (c - b)
                 enclosed -= place @ np.cross(by_s, by_t) / 12

@@ -20,7 +20,11 @@ from fabric_cad.weave.weaves import yarns_of
 def fabric_of(family, row):
     """The fabric of a measured row, None where it is none."""
     found = identify_rows(table(family, row))
-    return None if found.refused else SolvedFabric.from_row({name: each[0] for name, each in found.columns.items()})
+    return (
+        None
+        if found.refused
+        else SolvedFabric.from_row({name: each[0] for name, each in found.columns.items()})
+    )
 
 
 TWILL = fabric_of("twill", TWILL32)
@@ -37,11 +41,20 @@ def planned(fabric, options):
 @pytest.mark.parametrize("seed", range(6))
 def test_the_count_is_that_of_the_plans(form, seed):
     rng = np.random.default_rng([seed, len(form)])
-    draw = random_row if seed < 2 and form == "lenticular" else lambda rng: random_general_row(rng, form=form)
-    fabric = next(fabric for fabric in (fabric_of(*draw(rng)) for _ in range(200)) if fabric is not None)
+    draw = (
+        random_row
+        if seed < 2 and form == "lenticular"
+        else lambda rng: random_general_row(rng, form=form)
+    )
+    fabric = next(
+        fabric for fabric in (fabric_of(*draw(rng)) for _ in range(200)) if fabric is not None
+    )
     through = 2 * int(rng.integers(2, 4)) if form == "round" else 2 * int(rng.integers(1, 3))
     across, crossing = (int(n) for n in rng.integers(2 * through, 2 * through + 9, 2))
-    for options in (MeshOptions(across, crossing, through, 2 * int(rng.integers(1, 4))), mesh_options(fabric)):
+    for options in (
+        MeshOptions(across, crossing, through, 2 * int(rng.integers(1, 4))),
+        mesh_options(fabric),
+    ):
         assert hexahedra(fabric, options) == planned(fabric, options)
 
 
@@ -59,10 +72,16 @@ def test_zero_is_an_error_and_not_the_default(name):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"through": 100}, "^through: the mesh would have 380000000 hexahedra .* than the 8 GB .*; reduce through$"),
+        (
+            {"through": 100},
+            "^through: the mesh would have 380000000 hexahedra .* than the 8 GB .*; reduce through$",
+        ),
         ({"size": 0.002}, r"^size: the mesh would have 14139697000 hexahedra .*; raise size$"),
         ({"size": 0.5, "gap": 90000}, r"^gap: the mesh would have .*; reduce gap$"),
-        ({"across": 90000, "crossing": 4}, r"^across: .* GB, more than the 8 GB"),  # few hexahedra of a huge section
+        (
+            {"across": 90000, "crossing": 4},
+            r"^across: .* GB, more than the 8 GB",
+        ),  # few hexahedra of a huge section
         ({"gap": 100_000_000}, rf"^gap: 100000000 is above {MOST} \(elements\)$"),
         ({"across": 10**30}, rf"^across: this is above {MOST} \(elements\)$"),
         ({"across": 12.5}, "^across: 12.5 is not a whole number$"),
@@ -82,7 +101,9 @@ def test_the_bound_is_the_memory_there_is(monkeypatch):
     options = MeshOptions(40, 40, 4, 4)
     needed = needed_memory(TWILL, options)
     for there_is, refused in ((needed, False), (needed - 1, True), (None, False)):
-        monkeypatch.setattr("fabric_cad.meshing.options.available_memory", lambda there_is=there_is: there_is)
+        monkeypatch.setattr(
+            "fabric_cad.meshing.options.available_memory", lambda there_is=there_is: there_is
+        )
         if refused:
             with pytest.raises(InputError, match="hexahedra"):
                 options.check(TWILL)

@@ -9,7 +9,10 @@ from fabric_cad.meshing.options import mesh_options
 from fabric_cad.meshing.quality import hexahedra_quality, mesh_quality
 from fabric_cad.yarn.edges import allowed_scaled_jacobian
 
-CUBE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], dtype=float)
+CUBE = np.array(
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
+    dtype=float,
+)
 
 
 def prism(*section, length=1.0):
@@ -26,7 +29,10 @@ def test_scaled_jacobian_and_aspect_are_those_of_verdict_in_vtk():
     points = mesh.points * [1, 1, 0.2] + rng.normal(0, 0.008, mesh.points.shape)
     ours = hexahedra_quality(points, mesh.hexahedra)
     grid = pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: mesh.hexahedra}, points)
-    for name, values in (("scaled_jacobian", ours.scaled_jacobian), ("max_edge_ratio", ours.aspect)):
+    for name, values in (
+        ("scaled_jacobian", ours.scaled_jacobian),
+        ("max_edge_ratio", ours.aspect),
+    ):
         assert values == pytest.approx(grid.cell_quality(name).cell_data[name], rel=1e-9, abs=1e-12)
     assert ours.scaled_jacobian.min() < 0 < ours.scaled_jacobian.max()  # folded cells too
 
@@ -39,7 +45,10 @@ def test_figures_do_not_change_where_a_cell_is_moved_turned_scaled_or_numbered_o
     turned = Rotation.from_euler("xyz", [0.3, 1.0, 2.0]).apply(points) * 7 + [1, 2, 3]
     around = [1, 2, 3, 0, 5, 6, 7, 4]
     one = hexahedra_quality(points, np.arange(8)[None])
-    for other in (hexahedra_quality(turned, np.arange(8)[None]), hexahedra_quality(points, np.array([around]))):
+    for other in (
+        hexahedra_quality(turned, np.arange(8)[None]),
+        hexahedra_quality(points, np.array([around])),
+    ):
         for name, values in vars(one).items():
             assert vars(other)[name] == pytest.approx(values), name
 
@@ -72,8 +81,13 @@ def test_an_edge_without_length_is_no_good_element():
     """VTK calls it 1e30."""
     points = CUBE.copy()
     points[6] = points[2]
-    for found in (hexahedra_quality(points, np.arange(8)[None]), prism((0, 0), (1, 0), (1, 0), (0, 1))):
-        assert found.scaled_jacobian == 0 and found.opposite_edge_ratio == 0 and found.least_angle == 0
+    for found in (
+        hexahedra_quality(points, np.arange(8)[None]),
+        prism((0, 0), (1, 0), (1, 0), (0, 1)),
+    ):
+        assert (
+            found.scaled_jacobian == 0 and found.opposite_edge_ratio == 0 and found.least_angle == 0
+        )
 
 
 def test_quality_of_a_mesh_is_that_of_its_hexahedra():
@@ -92,7 +106,9 @@ def test_round_sections_are_as_good_as_their_edges_allow(seed):
     assert found.opposite_edge_ratio.min() > 0.01
 
 
-@pytest.mark.parametrize("asked", [{"across": 24, "through": 8}, {"gap": 12}, {"across": 6}, {"size": 0.05}])
+@pytest.mark.parametrize(
+    "asked", [{"across": 24, "through": 8}, {"gap": 12}, {"across": 6}, {"size": 0.05}]
+)
 def test_round_sections_at_other_sizes(asked):
     fabric = general_fabric(87)
     found = closed_quality(fabric, mesh_options(fabric, **asked))

@@ -5,7 +5,12 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from fabric_cad.meshing.templates import flat_template, lenticular_template, round_template, worst_corner
+from fabric_cad.meshing.templates import (
+    flat_template,
+    lenticular_template,
+    round_template,
+    worst_corner,
+)
 
 FLAT = [(1, 1), (4, 3), (8, 2)]
 POINTED = [(4, 2), (8, 2), (12, 2), (8, 4), (13, 4), (12, 6), (24, 8)]
@@ -33,7 +38,9 @@ def area(polygon):
     return (x * np.roll(y, -1, axis=-1) - y * np.roll(x, -1, axis=-1)).sum(axis=-1) / 2
 
 
-@pytest.mark.parametrize(("pointed", "across", "through"), [(False, *n) for n in FLAT] + [(True, *n) for n in POINTED])
+@pytest.mark.parametrize(
+    ("pointed", "across", "through"), [(False, *n) for n in FLAT] + [(True, *n) for n in POINTED]
+)
 def test_a_template_is_a_conforming_mesh_of_the_section(pointed, across, through):
     template = (lenticular_template if pointed else flat_template)(across, through)
     outline = lens(across) if pointed else box(across, through)
@@ -43,7 +50,11 @@ def test_a_template_is_a_conforming_mesh_of_the_section(pointed, across, through
     areas = area(nodes[template.quads])
     assert areas.min() > 0
     assert areas.sum() == pytest.approx(area(outline))
-    edges = Counter(frozenset(pair) for quad in template.quads.tolist() for pair in zip(quad, quad[1:] + quad[:1]))
+    edges = Counter(
+        frozenset(pair)
+        for quad in template.quads.tolist()
+        for pair in zip(quad, quad[1:] + quad[:1])
+    )
     border = {frozenset((k, (k + 1) % template.outline)) for k in range(template.outline)}
     assert {edge for edge, times in edges.items() if times == 1} == border
     assert set(edges.values()) <= {1, 2}
@@ -63,7 +74,10 @@ def test_a_ring_fits_a_smooth_outline(across, through):
     corner = np.arctan2(0.5, 1.0)  # outline nodes at the angles of a box's corners and between them
     ends = [-np.pi + corner, -corner, corner, np.pi - corner, np.pi + corner]
     angles = np.concatenate(
-        [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(ends, ends[1:], [across, through] * 2)]
+        [
+            np.linspace(a, b, n, endpoint=False)
+            for a, b, n in zip(ends, ends[1:], [across, through] * 2)
+        ]
     )
     outline = np.column_stack([2 * np.cos(angles), np.sin(angles)])
     nodes = np.vstack([outline, template.weights @ outline])

@@ -38,7 +38,13 @@ def identified(seed, draw=random_row):
     ],
 )
 def test_published_values(family, weave, density, width, crimp, p, A):
-    row = {"name": "r", **weave, "weft_density_per_mm": density, "weft_width_mm": width, "weft_crimp": crimp}
+    row = {
+        "name": "r",
+        **weave,
+        "weft_density_per_mm": density,
+        "weft_width_mm": width,
+        "weft_crimp": crimp,
+    }
     fabric = identify(table(family, row))["r"]
     for direction in (fabric.weft, fabric.warp):
         assert direction.p_low == direction.p_high == pytest.approx(p, abs=6e-8)
@@ -51,7 +57,9 @@ def test_published_values(family, weave, density, width, crimp, p, A):
 def test_the_relations_of_the_paper_hold(seed):
     _, row, fabric = identified(seed)
     weft, warp = fabric.weft, fabric.warp
-    assert weft.amplitude + warp.amplitude == pytest.approx(weft.thickness + warp.thickness, rel=1e-12)
+    assert weft.amplitude + warp.amplitude == pytest.approx(
+        weft.thickness + warp.thickness, rel=1e-12
+    )
     # (15)
     outer = max(weft.thickness + weft.amplitude, warp.thickness + warp.amplitude)
     assert fabric.fabric_thickness == pytest.approx(outer, rel=1e-12)
@@ -63,7 +71,9 @@ def test_the_relations_of_the_paper_hold(seed):
         assert d.amplitude == pytest.approx(d.slope * (other.width / 2 + gap), rel=1e-12)
         # (A.11), (A.12)
         projected = fabric.weave.wefts / 2 * d.crossed_spacing
-        assert excess_length(d.slope, other.width, gap) == pytest.approx(d.crimp * projected, rel=1e-11)
+        assert excess_length(d.slope, other.width, gap) == pytest.approx(
+            d.crimp * projected, rel=1e-11
+        )
 
 
 @pytest.mark.parametrize("draw", [random_row, random_general_row])
@@ -76,7 +86,9 @@ def test_control_points_lie_on_the_conics(draw, seed):
         p1, p2 = row[first], row[second]
         assert z1 == z2 and z5 == z6 and x1 == 0
         assert z3 == pytest.approx(z2 + p1 * (x3 - x2) ** 2, abs=1e-12)  # (1)
-        assert z4 == pytest.approx(z5 - p2 * (x4 - x5) ** 2, abs=1e-12)  # (2), its sign as in (A.29)
+        assert z4 == pytest.approx(
+            z5 - p2 * (x4 - x5) ** 2, abs=1e-12
+        )  # (2), its sign as in (A.29)
         slope = (z4 - z3) / (x4 - x3)
         assert 2 * p1 * (x3 - x2) == pytest.approx(slope, rel=1e-9)  # (11)
         assert 2 * p2 * (x5 - x4) == pytest.approx(slope, rel=1e-9)  # (12)
@@ -113,10 +125,15 @@ def test_every_three_of_the_five_quantities_give_the_same_fabric(seed, given_col
     full = _shared(fabric)
     again = {column: value for column, value in row.items() if column not in CLOSING}
     again |= {column: full[column] for column in given_columns} | {"thicker": _outer(fabric)}
-    outer = {d: fabric.directions[d].thickness + fabric.directions[d].amplitude for d in ("weft", "warp")}
+    outer = {
+        d: fabric.directions[d].thickness + fabric.directions[d].amplitude for d in ("weft", "warp")
+    }
     # at equal outer faces a set with the fabric thickness may be a hair outside what the others allow
     assume(abs(outer["weft"] - outer["warp"]) > 1e-6 * fabric.fabric_thickness)
-    alone = {"weft": {"weft_crimp", "weft_thickness_mm"}, "warp": {"warp_crimp", "warp_thickness_mm"}}
+    alone = {
+        "weft": {"weft_crimp", "weft_thickness_mm"},
+        "warp": {"warp_crimp", "warp_thickness_mm"},
+    }
     if set(given_columns) == alone[_outer(fabric)] | {"fabric_thickness_mm"}:
         with pytest.raises(InputError, match="of the same direction again|is below"):
             identify(table(solved["family"], again))
@@ -151,15 +168,22 @@ def test_a_table_is_solved_as_its_rows_are(some):
 def test_fabric_thickness_alone_leaves_two_solutions():
     base = UNBALANCED | {"fabric_thickness_mm": 0.75}
     solved = {
-        asked: identify(table("plain", base | {"thicker": asked} if asked else base)).row("unbalanced")
+        asked: identify(table("plain", base | {"thicker": asked} if asked else base)).row(
+            "unbalanced"
+        )
         for asked in ("weft", "warp", "")
     }
     for asked, other in (("weft", "warp"), ("warp", "weft")):
         row = solved[asked]
         assert row[f"{asked}_thickness_mm"] + row[f"{asked}_amplitude_mm"] == pytest.approx(0.75)
         for d in ("weft", "warp"):  # each names the other
-            assert row[f"other_{d}_thickness_mm"] == pytest.approx(solved[other][f"{d}_thickness_mm"])
-    even = min(("weft", "warp"), key=lambda d: abs(solved[d]["weft_thickness_mm"] - solved[d]["warp_thickness_mm"]))
+            assert row[f"other_{d}_thickness_mm"] == pytest.approx(
+                solved[other][f"{d}_thickness_mm"]
+            )
+    even = min(
+        ("weft", "warp"),
+        key=lambda d: abs(solved[d]["weft_thickness_mm"] - solved[d]["warp_thickness_mm"]),
+    )
     assert solved[""]["weft_thickness_mm"] == solved[even]["weft_thickness_mm"]
 
 
@@ -182,12 +206,32 @@ def test_what_is_measured_beyond_is_compared():
     ("change", "column", "words"),
     [
         ({"weft_crimp": ""}, "weft_crimp", "a balanced fabric needs one of the three"),
-        (UNBALANCED, "weft_thickness_mm", "fill 1 more of weft_thickness_mm, warp_thickness_mm, fabric_thickness_mm"),
+        (
+            UNBALANCED,
+            "weft_thickness_mm",
+            "fill 1 more of weft_thickness_mm, warp_thickness_mm, fabric_thickness_mm",
+        ),
         (UNBALANCED | {"warp_crimp": ""}, "warp_crimp", "fill 2 more"),
-        (UNBALANCED | {"fabric_thickness_mm": 0.6}, "fabric_thickness_mm", "0.6 is below A1 + A2 = 0.718"),
-        (UNBALANCED | {"weft_thickness_mm": 0.05}, "warp_crimp", "the contact rise at the weft's edges"),
-        (UNBALANCED | {"weft_thickness_mm": 0.9}, "weft_thickness_mm", "leaves the warp a thickness of"),
-        ({"section": "flat", "lateral_height_mm": 0.3}, "lateral_height_mm", "0.3 is not below the 0.2"),
+        (
+            UNBALANCED | {"fabric_thickness_mm": 0.6},
+            "fabric_thickness_mm",
+            "0.6 is below A1 + A2 = 0.718",
+        ),
+        (
+            UNBALANCED | {"weft_thickness_mm": 0.05},
+            "warp_crimp",
+            "the contact rise at the weft's edges",
+        ),
+        (
+            UNBALANCED | {"weft_thickness_mm": 0.9},
+            "weft_thickness_mm",
+            "leaves the warp a thickness of",
+        ),
+        (
+            {"section": "flat", "lateral_height_mm": 0.3},
+            "lateral_height_mm",
+            "0.3 is not below the 0.2",
+        ),
     ],
 )
 def test_what_is_no_fabric_is_refused_with_the_number_that_makes_it_so(change, column, words):
@@ -199,7 +243,10 @@ def test_what_is_no_fabric_is_refused_with_the_number_that_makes_it_so(change, c
 
 
 def test_all_refusals_of_a_table_are_listed():
-    rows = [UNBALANCED | {"name": f"r{k}", "fabric_thickness_mm": w} for k, w in enumerate((0.5, 0.8, 0.6))]
+    rows = [
+        UNBALANCED | {"name": f"r{k}", "fabric_thickness_mm": w}
+        for k, w in enumerate((0.5, 0.8, 0.6))
+    ]
     with pytest.raises(InputError) as refused:
         identify(table("plain", *rows))
     assert [problem.row for problem in refused.value.problems] == ["r0", "r2"]
@@ -214,8 +261,12 @@ def test_the_general_trajectory(seed):
     for name, other in (("weft", "warp"), ("warp", "weft")):
         source = "weft" if balanced else other
         width = given_row[f"{source}_width_mm"]
-        chord = {side: given_row.get(f"{source}_contact_{side}_mm", width) for side in ("top", "bottom")}
-        offset = {side: given_row.get(f"{source}_offset_{side}_mm", 0.0) for side in ("top", "bottom")}
+        chord = {
+            side: given_row.get(f"{source}_contact_{side}_mm", width) for side in ("top", "bottom")
+        }
+        offset = {
+            side: given_row.get(f"{source}_offset_{side}_mm", 0.0) for side in ("top", "bottom")
+        }
         d = fabric.directions[name]
         a, (low, high) = d.crossed_spacing, fabric.weave.floats(name)
         # the weft starts low, under the bottom of its warps; the warp high, on the top of its wefts
@@ -230,7 +281,9 @@ def test_the_general_trajectory(seed):
         p_first, p_second = (d.p_low, d.p_high) if name == "weft" else (d.p_high, d.p_low)
         assert p_second == pytest.approx(p_first * u_first / u_second)  # (A.25), (A.26)
         assert d.slope == pytest.approx(2 * p_first * u_first)
-        assert d.amplitude == pytest.approx(d.slope * (u_first / 2 + gap + u_second / 2))  # (A.27)-(A.29)
+        assert d.amplitude == pytest.approx(
+            d.slope * (u_first / 2 + gap + u_second / 2)
+        )  # (A.27)-(A.29)
         excess = excess_length(d.slope, u_first + u_second, gap)
         assert excess == pytest.approx(d.crimp * (low + high) / 2 * a, rel=1e-9)  # (A.11), (A.12)
 
@@ -246,7 +299,12 @@ def test_the_general_trajectory(seed):
 )
 def test_number_of_parameters(cells, parameters):
     assert identify(table("twill", TWILL32 | cells)).row("twill32")["parameters"] == parameters
-    warp = {"warp_density_per_mm": 0.35, "warp_width_mm": 2.4, "warp_crimp": 0.004, "weft_thickness_mm": 0.36}
+    warp = {
+        "warp_density_per_mm": 0.35,
+        "warp_width_mm": 2.4,
+        "warp_crimp": 0.004,
+        "weft_thickness_mm": 0.36,
+    }
     warp |= {column.replace("weft", "warp"): value for column, value in cells.items()}
     both = identify(table("twill", TWILL32 | cells | warp)).row("twill32")
     assert both["parameters"] == {3: 7, 4: 8, 6: 12, 9: 18}[parameters]
@@ -256,8 +314,16 @@ def test_number_of_parameters(cells, parameters):
     ("cells", "column", "words"),
     [
         ({"weft_contact_top_mm": 2.5}, "weft_contact_top_mm", "2.5 is above the weft width 2.4 mm"),
-        ({"weft_offset_top_mm": 1.3}, "weft_offset_top_mm", "1.3 is not below half the contact chord, 1.2 mm"),
-        ({"section": "round"}, "weft_contact_top_mm", "needs a contact chord below its width 2.4 mm"),
+        (
+            {"weft_offset_top_mm": 1.3},
+            "weft_offset_top_mm",
+            "1.3 is not below half the contact chord, 1.2 mm",
+        ),
+        (
+            {"section": "round"},
+            "weft_contact_top_mm",
+            "needs a contact chord below its width 2.4 mm",
+        ),
         (
             {"section": "round", "weft_contact_top_mm": 2.0, "weft_contact_bottom_mm": 2.35},
             "weft_contact_top_mm",

@@ -23,7 +23,10 @@ def test_excess_is_the_arc_length_beyond_the_projection(slope, parabola, gap):
 
 
 def test_excess_is_smooth_where_its_series_ends():
-    below, above = excess_length(np.nextafter(0.3, 0), 2.0, 0.0), excess_length(np.nextafter(0.3, 1), 2.0, 0.0)
+    below, above = (
+        excess_length(np.nextafter(0.3, 0), 2.0, 0.0),
+        excess_length(np.nextafter(0.3, 1), 2.0, 0.0),
+    )
     assert above == pytest.approx(below, rel=2e-14)
 
 

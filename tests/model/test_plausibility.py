@@ -29,7 +29,13 @@ HEADER = "name,over,under,weft_density_per_mm,weft_width_mm,weft_crimp,weft_thic
 
 
 UNCRIMPED = {column: value for column, value in TWILL32.items() if column != "weft_crimp"}
-SATIN8 = {"name": "satin8", "harness": 8, "step": 3, "weft_density_per_mm": 0.8, "weft_width_mm": 1.0}
+SATIN8 = {
+    "name": "satin8",
+    "harness": 8,
+    "step": 3,
+    "weft_density_per_mm": 0.8,
+    "weft_width_mm": 1.0,
+}
 
 
 def warnings_of(family, *rows):
@@ -45,7 +51,9 @@ def test_the_bound_is_where_the_slackest_yarn_is_packed_solid():
 
 def test_a_slope_just_above_the_bound_is_refused_and_just_below_is_warned_of():
     crimps = np.linspace(0.3, 0.6, 61)
-    measured = table("twill", *(TWILL32 | {"name": f"r{k}", "weft_crimp": c} for k, c in enumerate(crimps)))
+    measured = table(
+        "twill", *(TWILL32 | {"name": f"r{k}", "weft_crimp": c} for k, c in enumerate(crimps))
+    )
     found = identify_rows(measured)
     slopes = np.asarray(found.columns["weft_slope"])
     assert 0 < len(found.refused) < len(crimps) and slopes.max() <= LARGEST_SLOPE
@@ -59,10 +67,18 @@ def test_a_slope_just_above_the_bound_is_refused_and_just_below_is_warned_of():
     ("family", "row", "columns"),
     [
         ("twill", TWILL32, []),
-        ("twill", TWILL32 | {"weft_crimp": 0.2}, ["weft_crimp"]),  # a balanced row is warned of once
+        (
+            "twill",
+            TWILL32 | {"weft_crimp": 0.2},
+            ["weft_crimp"],
+        ),  # a balanced row is warned of once
         ("plain", UNBALANCED | {"warp_crimp": 0.15, "fabric_thickness_mm": 4.0}, ["warp_crimp"]),
         ("twill", UNCRIMPED | {"weft_thickness_mm": 2.0}, ["weft_thickness_mm"]),
-        ("satin", SATIN8 | {"weft_crimp": 0.06}, ["weft_crimp"]),  # in eight spacings that is a slope above 1
+        (
+            "satin",
+            SATIN8 | {"weft_crimp": 0.06},
+            ["weft_crimp"],
+        ),  # in eight spacings that is a slope above 1
     ],
 )
 def test_a_warning_names_the_column_that_caused_it(family, row, columns):
@@ -70,9 +86,9 @@ def test_a_warning_names_the_column_that_caused_it(family, row, columns):
     assert [problem.column for problem in told] == columns
     for problem in told:
         assert problem.line == 2 and problem.row == row["name"] and "slope of" in problem.message
-        assert problem.message.endswith(f"({'crimp is a ratio'}; {problem.column}_percent takes per cent)") == (
-            "crimp" in problem.column
-        )
+        assert problem.message.endswith(
+            f"({'crimp is a ratio'}; {problem.column}_percent takes per cent)"
+        ) == ("crimp" in problem.column)
 
 
 def test_the_column_of_a_refusal_is_the_one_that_gave_the_slope():
@@ -84,7 +100,9 @@ def test_the_column_of_a_refusal_is_the_one_that_gave_the_slope():
 
 
 def test_the_commands_warn_on_standard_error(here, capsys):
-    Path("families/twill.csv").write_text(f"{HEADER}\nc04,3,2,0.35,2.4,0.4,\nfine,3,2,0.35,2.4,0.004,\n")
+    Path("families/twill.csv").write_text(
+        f"{HEADER}\nc04,3,2,0.35,2.4,0.4,\nfine,3,2,0.35,2.4,0.004,\n"
+    )
     for command in ("list", "solve", "validate"):
         assert main([command, "-q"]) == 0
         lines = capsys.readouterr().err.splitlines()
@@ -93,7 +111,9 @@ def test_the_commands_warn_on_standard_error(here, capsys):
         )
     Path("families/twill.csv").write_text(f"{HEADER}\nc400,3,2,0.35,2.4,400,\n")
     assert main(["cell", "c400", "-q"]) == 2
-    assert capsys.readouterr().err.startswith("families/twill.csv:2: weft_crimp: gives the weft a slope of 1.7")
+    assert capsys.readouterr().err.startswith(
+        "families/twill.csv:2: weft_crimp: gives the weft a slope of 1.7"
+    )
 
 
 def test_a_report_and_the_command_say_the_same(here, capsys):
@@ -108,7 +128,11 @@ def test_a_report_and_the_command_say_the_same(here, capsys):
 def report_of(jacobian, volumes=None):
     """A report of nothing but what is looked at."""
     figures = {field.name: 4 for field in fields(MeshFigures)}
-    figures |= {"min_scaled_jacobian": jacobian, "scaled_jacobian_edges_allow": 0.5, "other_elements": 0}
+    figures |= {
+        "min_scaled_jacobian": jacobian,
+        "scaled_jacobian_edges_allow": 0.5,
+        "other_elements": 0,
+    }
     return CellReport(
         fabric=SimpleNamespace(name="r"),
         identification=None,
@@ -122,7 +146,8 @@ def report_of(jacobian, volumes=None):
 @pytest.mark.parametrize("jacobian", [-0.2, 0.0, LEAST_JACOBIAN, float("nan")])
 def test_elements_no_solver_takes_are_not_delivered(jacobian):
     with pytest.raises(
-        BuildError, match="min_scaled_jacobian is .*, not above 0.0001: the mesh has elements no solver takes"
+        BuildError,
+        match="min_scaled_jacobian is .*, not above 0.0001: the mesh has elements no solver takes",
     ):
         check_report(report_of(jacobian))
 
@@ -131,14 +156,19 @@ def test_low_elements_are_delivered_with_a_warning():
     report = report_of(LOW_JACOBIAN / 2)
     check_report(report)
     (sentence,) = doubts(report)
-    assert "smallest scaled Jacobian of the mesh is 0.01, below 0.02" in sentence and "(row r)" in sentence
+    assert (
+        "smallest scaled Jacobian of the mesh is 0.01, below 0.02" in sentence
+        and "(row r)" in sentence
+    )
     assert doubts(report_of(LOW_JACOBIAN)) == []
 
 
 def test_fibres_that_do_not_fit_are_told():
     report = report_of(0.5, Volumes(1.0, 2.0, weft_fibre_fraction=0.95, warp_fibre_fraction=0.6))
     (sentence,) = doubts(report)
-    assert sentence.startswith("weft_linear_density_tex: fibres fill 95 % of the yarn's volume, above 91 %")
+    assert sentence.startswith(
+        "weft_linear_density_tex: fibres fill 95 % of the yarn's volume, above 91 %"
+    )
 
 
 def test_a_study_has_the_warnings_of_its_units():
@@ -150,5 +180,7 @@ def test_a_study_has_the_warnings_of_its_units():
     fine, steep = identified_figures(measured, found)["warnings"]
     (problem,) = implausible(measured, identify(measured).columns)
     assert (fine, steep) == (None, str(problem))
-    assert "warnings" not in identified_figures(measured.take([0]), identify_rows(measured.take([0])))
+    assert "warnings" not in identified_figures(
+        measured.take([0]), identify_rows(measured.take([0]))
+    )
     assert flat({"warnings": ["a", "b"]}) == {"warnings": "a; b"} and flat({"warnings": []}) == {}

@@ -52,7 +52,11 @@ def spread_of(family: str, row: dict) -> tuple[dict, dict]:
         ("plain", FLAT),
         ("plain", UNBALANCED | {"fabric_thickness_mm": 0.8, "thicker": "weft"}),
         ("plain", UNBALANCED | {"fabric_thickness_mm": 0.8, "thicker": "warp"}),
-        ("plain", {k: v for k, v in UNBALANCED.items() if k != "warp_crimp"} | dict.fromkeys(CLOSING[2:4], 0.36)),
+        (
+            "plain",
+            {k: v for k, v in UNBALANCED.items() if k != "warp_crimp"}
+            | dict.fromkeys(CLOSING[2:4], 0.36),
+        ),
         (
             "satin",
             {"name": "s", "harness": 8, "step": 3, "weft_density_per_mm": 0.8, "weft_width_mm": 1.0}
@@ -67,10 +71,23 @@ def test_first_order_agrees_with_sampling(family, row):
     scattered = with_scatter(row, 0.004)
     drawn = {c: rng.normal(row[c], scattered[f"{c}_std"], SAMPLES) for c in measurements(row)}
     sampled = identify(
-        table(family, *(row | {"name": f"n{k}"} | {c: v[k] for c, v in drawn.items()} for k in range(SAMPLES)))
+        table(
+            family,
+            *(
+                row | {"name": f"n{k}"} | {c: v[k] for c, v in drawn.items()}
+                for k in range(SAMPLES)
+            ),
+        )
     )
     mean, std = spread_of(family, scattered)
-    assert {"weft_slope", "warp_amplitude_mm", "p21", "M15_z_mm", "fabric_thickness_mm", "weft_low_edge_q"} <= set(std)
+    assert {
+        "weft_slope",
+        "warp_amplitude_mm",
+        "p21",
+        "M15_z_mm",
+        "fabric_thickness_mm",
+        "weft_low_edge_q",
+    } <= set(std)
     for column, expected in std.items():
         found = np.array(sampled.columns[column])
         assert np.std(found) == pytest.approx(expected, rel=0.04, abs=1e-12), column
@@ -78,21 +95,31 @@ def test_first_order_agrees_with_sampling(family, row):
 
 
 def test_fabric_thickness_scatters_twice_as_the_yarns_of_a_balanced_fabric():
-    _, std = spread_of("plain", BALANCED | {"weft_thickness_mm": 0.36, "weft_thickness_mm_std": 0.015})
+    _, std = spread_of(
+        "plain", BALANCED | {"weft_thickness_mm": 0.36, "weft_thickness_mm_std": 0.015}
+    )
     for d in ("weft", "warp"):
-        assert std[f"{d}_thickness_mm"] == std[f"{d}_amplitude_mm"] == pytest.approx(0.015, rel=1e-12)
+        assert (
+            std[f"{d}_thickness_mm"] == std[f"{d}_amplitude_mm"] == pytest.approx(0.015, rel=1e-12)
+        )
     assert std["fabric_thickness_mm"] == pytest.approx(0.03, rel=1e-12)
-    _, std = spread_of("plain", BALANCED | {"fabric_thickness_mm": 0.72, "fabric_thickness_mm_std": 0.03})
+    _, std = spread_of(
+        "plain", BALANCED | {"fabric_thickness_mm": 0.72, "fabric_thickness_mm_std": 0.03}
+    )
     assert std["weft_thickness_mm"] == pytest.approx(0.015, rel=1e-10)
 
 
 def test_a_crimp_alone_follows_the_length_equation():
     mean, std = spread_of("plain", BALANCED | {"weft_crimp": 0.004, "weft_crimp_std": 0.0003})
     spacing, width = 1 / 0.22, 3.2
-    slope = 0.0003 * spacing / _excess_derivative(np.array(mean["weft_slope"]), width, spacing - width)  # (A.11)
+    slope = (
+        0.0003 * spacing / _excess_derivative(np.array(mean["weft_slope"]), width, spacing - width)
+    )  # (A.11)
     assert std["weft_crimp"] == pytest.approx(0.0003, rel=1e-9)
     assert std["weft_slope"] == std["warp_slope"] == pytest.approx(slope, rel=1e-8)
-    assert std["weft_amplitude_mm"] == pytest.approx(slope * (spacing - width / 2), rel=1e-8)  # (A.27)-(A.29)
+    assert std["weft_amplitude_mm"] == pytest.approx(
+        slope * (spacing - width / 2), rel=1e-8
+    )  # (A.27)-(A.29)
     assert std["p11"] == pytest.approx(slope / width, rel=1e-8)
     assert std["weft_width_mm"] == std["weft_crossed_spacing_mm"] == std["M15_x_mm"] == 0
 
@@ -123,7 +150,9 @@ def test_properties_of_a_propagation(seed, share):
     # squares add over the measurements
     squares = dict.fromkeys(spread.std, 0.0)
     for column in measurements(row):
-        for name, value in spread_of(family, row | {f"{column}_std": scattered[f"{column}_std"]})[1].items():
+        for name, value in spread_of(family, row | {f"{column}_std": scattered[f"{column}_std"]})[
+            1
+        ].items():
             squares[name] += value**2
     for name, values in spread.std.items():
         assert values[0] == pytest.approx(np.sqrt(squares[name]), rel=1e-12)
@@ -140,7 +169,13 @@ def test_a_table_is_propagated_as_its_rows_are():
     rows = [
         BALANCED | {"name": "none", "weft_crimp": 0.004},
         with_scatter(BALANCED | {"name": "one", "weft_crimp": 0.005}, 0.01),
-        UNBALANCED | {"name": "two", "weft_thickness_mm": 0.33, "warp_crimp_std": 1e-4, "warp_width_mm_std": 0},
+        UNBALANCED
+        | {
+            "name": "two",
+            "weft_thickness_mm": 0.33,
+            "warp_crimp_std": 1e-4,
+            "warp_width_mm_std": 0,
+        },
     ]
     whole = propagate(table("plain", *rows))
     for at, row in enumerate(rows):
@@ -162,12 +197,18 @@ def test_no_step_changes_the_solution_taken():
     for d, other in (("weft", "warp"), ("warp", "weft")):
         amplitude = asked[d][f"{d}_amplitude_mm"]
         assert asked[d][f"{d}_thickness_mm"] == pytest.approx(amplitude, rel=1e-6)  # w - A
-        assert asked[d][f"{other}_thickness_mm"] == pytest.approx(np.sqrt(5) * amplitude, rel=1e-6)  # 2 A + A' - w
+        assert asked[d][f"{other}_thickness_mm"] == pytest.approx(
+            np.sqrt(5) * amplitude, rel=1e-6
+        )  # 2 A + A' - w
 
 
 AT_BOUND = {
     "name": "bound",
-    **{f"{d}_{q}": v for d in ("weft", "warp") for q, v in (("density_per_mm", 0.22), ("width_mm", 3.2))},
+    **{
+        f"{d}_{q}": v
+        for d in ("weft", "warp")
+        for q, v in (("density_per_mm", 0.22), ("width_mm", 3.2))
+    },
     "weft_thickness_mm": 0.36,
     "warp_thickness_mm": 0.36,
     "fabric_thickness_mm": 0.72,
@@ -210,7 +251,9 @@ def test_doubts():
 
     assert words(with_scatter(BALANCED | {"weft_crimp": 0.004}, 0.05)) == []
     (message,) = words(BALANCED | {"weft_crimp": 0.004, "weft_crimp_std": 0.005})
-    assert message.startswith("one standard deviation below the mean is no fabric: -0.001 is not above 0")
+    assert message.startswith(
+        "one standard deviation below the mean is no fabric: -0.001 is not above 0"
+    )
     (message,) = words(BALANCED | {"weft_crimp": 0.004, "weft_width_mm_std": 1.5})
     assert message.endswith("weft_width_mm: 4.7 is not below the weft spacing 4.545 mm")
     # the kink of (15): faces at one height
@@ -228,12 +271,21 @@ def test_units_are_those_of_the_value():
     assert measured.scatter["weft_crimp"][0] == pytest.approx(0.0003, rel=1e-15)
     assert measured.balanced.all() and measured.scattered.all()
     assert set(measured.scatter) == set(MEASURED)
-    inch = {"weft_density_per_inch": 5.588, "weft_density_per_inch_std": 0.0508, "weft_width_mm": 3.2}
-    assert table("plain", {"name": "x"} | inch).scatter["weft_density_per_mm"][0] == pytest.approx(0.002, rel=1e-12)
+    inch = {
+        "weft_density_per_inch": 5.588,
+        "weft_density_per_inch_std": 0.0508,
+        "weft_width_mm": 3.2,
+    }
+    assert table("plain", {"name": "x"} | inch).scatter["weft_density_per_mm"][0] == pytest.approx(
+        0.002, rel=1e-12
+    )
 
 
 def test_a_table_of_one_row_keeps_its_scatter():
-    rows = [BALANCED | {"name": f"r{k}", "weft_crimp": 0.004, "weft_crimp_std": 1e-4 * k} for k in range(3)]
+    rows = [
+        BALANCED | {"name": f"r{k}", "weft_crimp": 0.004, "weft_crimp_std": 1e-4 * k}
+        for k in range(3)
+    ]
     measured = table("plain", *rows)
     assert measured["r2"].scatter["weft_crimp"] == [2e-4]
     assert measured["r2"].names == ("r2",) and measured["r2"].family == "plain"
@@ -360,15 +412,28 @@ def test_shipped_rows_agree_with_the_model():
     assert compared and all(abs(model / measured - 1) < 0.05 for _, measured, model in compared)
     assert any(each.scattered.any() for each in tables)
     # these yarns scatter by more than the gap between them
-    doubted = [(problem.row, problem.column) for each, one in zip(tables, solved) for problem in doubts(each, one)]
-    assert doubted == [("twintex_tpeet44", "weft_width_mm_std"), ("twintex_tpecu53", "warp_width_mm_std")]
+    doubted = [
+        (problem.row, problem.column)
+        for each, one in zip(tables, solved)
+        for problem in doubts(each, one)
+    ]
+    assert doubted == [
+        ("twintex_tpeet44", "weft_width_mm_std"),
+        ("twintex_tpecu53", "warp_width_mm_std"),
+    ]
 
 
 def test_validation_loads_no_more_than_it_needs():
     code = "import sys; from fabric_cad.cli import main; main(['validate', '-q', '--families', sys.argv[1]])"
     code += "; print([name for name in ('cadquery', 'OCP', 'gmsh', 'scipy', 'pyvista') if name in sys.modules])"
     command = [sys.executable, "-c", code, str(shipped_families())]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(fabric_cad.__file__).parents[1])
+    done = subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(fabric_cad.__file__).parents[1],
+    )
     assert done.stdout.splitlines()[-1] == "[]"
 
 
@@ -385,4 +450,7 @@ def test_the_report_holds_standard_deviations(tmp_path):
     assert found["weft"]["std"]["control_points"]["M13"] == [std["M13_x_mm"], std["M13_z_mm"]]
     assert found["warp"]["std"]["p_low"] == std["p22"]
     assert found["fabric_thickness_std_mm"] == std["fabric_thickness_mm"]
-    assert "std" not in make_cell(table("twill", TWILL32), tmp_path, {"size": 0.6})["identified"]["weft"]
+    assert (
+        "std"
+        not in make_cell(table("twill", TWILL32), tmp_path, {"size": 0.6})["identified"]["weft"]
+    )

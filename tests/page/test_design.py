@@ -37,7 +37,12 @@ def served(tmp_path_factory):
     command = [sys.executable, "-m", "fabric_cad", "design", "plain", "--no-browser"]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     process = subprocess.Popen(
-        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        command,
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
     )
     yield folder, process.stdout.readline().strip()
     process.send_signal(signal.SIGINT)
@@ -79,7 +84,9 @@ def opened(browser, address):
 
 
 def ready(page):
-    page.wait_for_function("() => window.fabric && window.fabric.draws > 0 && window.fabric_design.cut.svg")
+    page.wait_for_function(
+        "() => window.fabric && window.fabric.draws > 0 && window.fabric_design.cut.svg"
+    )
 
 
 def settled(page):
@@ -173,7 +180,9 @@ def test_crimp_and_thickness_change_roles(tab):
     tab.fill("#f-weft_crimp", "")
     tab.press("#f-weft_crimp", "Enter")
     settled(tab)
-    roles = tab.evaluate("() => Object.fromEntries(fabric_design.row.quantities.map(q => [q.column, q.role]))")
+    roles = tab.evaluate(
+        "() => Object.fromEntries(fabric_design.row.quantities.map(q => [q.column, q.role]))"
+    )
     assert roles["weft_thickness_mm"] == "identifies" and roles["weft_crimp"] == "follows"
     assert tab.locator("#f-weft_crimp").get_attribute("placeholder").startswith("0.00")
 
@@ -217,10 +226,14 @@ def pixels(page):
 
 
 def test_a_draft_is_dropped(tab):
-    tab.set_input_files("#wif", {"name": "mine.wif", "mimeType": "text/plain", "buffer": WIF.encode()})
+    tab.set_input_files(
+        "#wif", {"name": "mine.wif", "mimeType": "text/plain", "buffer": WIF.encode()}
+    )
     settled(tab)
     assert tab.evaluate("() => fabric_design.row.family") == "pattern"
-    tab.set_input_files("#wif", {"name": "bad.wif", "mimeType": "text/plain", "buffer": b"nonsense"})
+    tab.set_input_files(
+        "#wif", {"name": "bad.wif", "mimeType": "text/plain", "buffer": b"nonsense"}
+    )
     settled(tab)
     assert tab.locator("#problem").inner_text().startswith("bad.wif")
 
@@ -240,7 +253,9 @@ def test_a_row_is_saved_and_the_table_is_otherwise_as_it_was(served, tab):
     settled(tab)
     assert "mine added to" in tab.locator("#notice").inner_text()
     after = path.read_bytes()
-    assert after.startswith(before) and after[len(before) :].decode().startswith("mine,0.22,,3.05,,0.004")
+    assert after.startswith(before) and after[len(before) :].decode().startswith(
+        "mine,0.22,,3.05,,0.004"
+    )
     assert identify(read_family(path))["mine"].weft.width == 3.05
 
 
@@ -259,7 +274,10 @@ def test_the_link_holds_the_row_and_two_pages_do_not_mix(served, browser, tab):
         assert tab.evaluate("() => fabric_design.quantity.weft_width_mm.text") == "2.9"
         tab.click("#undo")
         settled(tab)
-        assert other.input_value("#f-weft_width_mm") == "2.5" and tab.input_value("#f-weft_width_mm") == "3.2"
+        assert (
+            other.input_value("#f-weft_width_mm") == "2.5"
+            and tab.input_value("#f-weft_width_mm") == "3.2"
+        )
 
     tab.goto(link)
     tab.reload()
@@ -305,7 +323,9 @@ def test_every_control_has_a_name_and_a_small_screen_shows_all_of_it(tab):
         ).map(element => element.outerHTML)"""
     )
     assert unnamed == []
-    size = tab.evaluate("() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+    size = tab.evaluate(
+        "() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+    )
     assert size[0] <= 1366 and size[1] <= 768
     assert tab.locator(".grid [tabindex='0']").count() == 1  # one stop of the tab key
 
@@ -360,9 +380,16 @@ async def _refusals(base, token):
         upgrade = {"Upgrade": "websocket", "Connection": "Upgrade"}
         await status("socket of a foreign origin", "/ws", Origin="http://127.0.0.1:1", **upgrade)
         await status("socket without an origin", "/ws", **upgrade)
-        await status("cross-site script", "/__fabric_cad/design.js", **{"Sec-Fetch-Site": "cross-site"})
+        await status(
+            "cross-site script", "/__fabric_cad/design.js", **{"Sec-Fetch-Site": "cross-site"}
+        )
         await status("post elsewhere", method="post")
-        for name, secret in (("right", token), ("wrong", "x" * 43), ("no", None), ("default", "wslink-secret")):
+        for name, secret in (
+            ("right", token),
+            ("wrong", "x" * 43),
+            ("no", None),
+            ("default", "wslink-secret"),
+        ):
             found[f"{name} token"] = await _is_answered(session, base, secret)
     return found
 
@@ -373,13 +400,21 @@ async def _is_answered(session, base, secret):
     from wslink.chunking import UnChunker, generate_chunks
 
     async def ask(socket, number, method, *arguments):
-        message = {"wslink": "1.0", "id": number, "method": method, "args": list(arguments), "kwargs": {}}
+        message = {
+            "wslink": "1.0",
+            "id": number,
+            "method": method,
+            "args": list(arguments),
+            "kwargs": {},
+        }
         for chunk in generate_chunks(msgpack.packb(message), 4_000_000):
             await socket.send_bytes(chunk)
 
     answers, unchunker = {}, UnChunker()
     unchunker.set_max_message_size(10**9)
-    async with session.ws_connect(f"{base.replace('http', 'ws')}/ws", headers={"Origin": base}) as socket:
+    async with session.ws_connect(
+        f"{base.replace('http', 'ws')}/ws", headers={"Origin": base}
+    ) as socket:
         if secret is not None:
             await ask(socket, "system:c0:1", "wslink.hello", {"secret": secret})
         await ask(socket, "rpc:c0:2", "trame.trigger", "ask", ["tab", "open", ""], {})

@@ -16,7 +16,9 @@ from fabric_cad.page.jobs import Job
 from fabric_cad.page.server import Address, inside_here, open_browser
 from fabric_cad.support.errors import OutputError
 
-ROWS = {row.names[0]: row for measured in read_families(shipped_families()).values() for row in measured}
+ROWS = {
+    row.names[0]: row for measured in read_families(shipped_families()).values() for row in measured
+}
 
 
 @pytest.fixture
@@ -30,7 +32,9 @@ def test_answers_are_json_and_a_scene_comes_with_another_fabric_only(desk):
 
     refused = desk.ask("a", "change", "weft_width_mm", "3", True)
     assert refused["row"]["refused"] and "scene" not in refused
-    assert "not below" in next(q["refusal"] for q in refused["row"]["quantities"] if q["column"] == "weft_width_mm")
+    assert "not below" in next(
+        q["refusal"] for q in refused["row"]["quantities"] if q["column"] == "weft_width_mm"
+    )
     assert "scene" in desk.ask("a", "change", "weft_width_mm", "2.2", True)
     assert desk.ask("a", "undo")["row"]["quantities"][1]["text"] == "2.4"
 
@@ -49,7 +53,9 @@ def test_tabs_do_not_mix(desk):
 
 
 def test_a_link_opens_its_row_and_a_wrong_one_is_told(desk):
-    link = desk.ask("a", "open", "plain?name=p&weft_density_per_mm=0.2&weft_width_mm=3&weft_crimp=0.004")["row"]["link"]
+    link = desk.ask(
+        "a", "open", "plain?name=p&weft_density_per_mm=0.2&weft_width_mm=3&weft_crimp=0.004"
+    )["row"]["link"]
     assert desk.ask("b", "open", link)["row"]["link"] == link
     wrong = desk.ask("c", "open", "plain?weft_width_mm=3")
     assert "weft_density_per_mm" in wrong["problem"] and wrong["row"]["name"] == "twill22"
@@ -90,7 +96,9 @@ def test_what_has_no_answer_is_told_and_changes_nothing(desk, asked):
 def test_a_dropped_draft_is_read_strictly_and_told_of_by_its_own_name(desk):
     desk.ask("a", "open", "")
     assert desk.ask("a", "draft", "/home/x/mine.wif", WIF)["row"]["grid"] == ["01", "10"]
-    told = desk.ask("a", "draft", "/home/x/mine.wif", WIF.replace("Threads=4", "Threads=many", 1))["problem"]
+    told = desk.ask("a", "draft", "/home/x/mine.wif", WIF.replace("Threads=4", "Threads=many", 1))[
+        "problem"
+    ]
     assert told.startswith("mine.wif:7: [WARP] Threads") and "/tmp" not in told
 
 

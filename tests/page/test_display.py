@@ -19,7 +19,9 @@ ROW = read_family(shipped_families() / "twill.csv")["twill22"]
 
 def test_a_row_is_shown_as_its_page_in_a_frame_without_rights():
     text = fabric_cad.show(ROW)._repr_html_()
-    frame = re.fullmatch(r'<iframe sandbox="([^"]*)" srcdoc="([^"]*)" style="[^"]*" title="twill22"></iframe>', text)
+    frame = re.fullmatch(
+        r'<iframe sandbox="([^"]*)" srcdoc="([^"]*)" style="[^"]*" title="twill22"></iframe>', text
+    )
     assert frame[1] == "allow-scripts"
     assert html.unescape(frame[2]) == fabric_page(solution_of(ROW)).text
 

@@ -18,7 +18,9 @@ from fabric_cad.page.saving import RowExistsError, save_row
 from fabric_cad.page.session import Session
 from fabric_cad.support.errors import InputError, OutputError
 
-ROWS = {row.names[0]: row for measured in read_families(shipped_families()).values() for row in measured}
+ROWS = {
+    row.names[0]: row for measured in read_families(shipped_families()).values() for row in measured
+}
 
 
 def same_fabric(first, second):
@@ -26,7 +28,9 @@ def same_fabric(first, second):
     for direction in ("weft", "warp"):
         one, two = first.directions[direction], second.directions[direction]
         assert np.allclose(one.points, two.points, rtol=1e-9, atol=1e-12)
-        assert np.isclose([one.width, one.thickness, one.crimp], [two.width, two.thickness, two.crimp], rtol=1e-9).all()
+        assert np.isclose(
+            [one.width, one.thickness, one.crimp], [two.width, two.thickness, two.crimp], rtol=1e-9
+        ).all()
     assert np.array_equal(first.weave.interlacement(), second.weave.interlacement())
     return True
 
@@ -37,7 +41,9 @@ def test_a_row_of_a_table_is_edited_as_the_fabric_it_is(name):
     assert same_fabric(found.fabric, identify(ROWS[name])[name])
     expected = identify(ROWS[name]).comparisons[0]
     assert [told[0] for told in comparisons(found)] == [told[0] for told in expected]
-    assert np.allclose([told[1:] for told in comparisons(found)], [told[1:] for told in expected], rtol=1e-9)
+    assert np.allclose(
+        [told[1:] for told in comparisons(found)], [told[1:] for told in expected], rtol=1e-9
+    )
 
 
 @pytest.mark.parametrize("name", ROWS)
@@ -45,7 +51,9 @@ def test_a_link_holds_the_row(name):
     row = edited(ROWS[name])
     again = row_of(link_of(row))
     assert again.family == row.family
-    assert dict(again.cells) == {c: text for c, text in row.cells.items() if c not in ("source", "notes")}
+    assert dict(again.cells) == {
+        c: text for c, text in row.cells.items() if c not in ("source", "notes")
+    }
 
 
 @pytest.mark.parametrize(
@@ -69,8 +77,13 @@ def test_a_refusal_names_its_column_and_the_last_good_fabric_stays():
     good = session.good
     session.change("weft_width_mm", "2.9")  # the spacing is 2.857 mm
     assert session.refused and session.good is good
-    told = {quantity.column: quantity.refusal for quantity in session.quantities() if quantity.refusal}
-    assert list(told) == ["weft_width_mm"] and "not below the weft spacing 2.857 mm" in told["weft_width_mm"]
+    told = {
+        quantity.column: quantity.refusal for quantity in session.quantities() if quantity.refusal
+    }
+    assert (
+        list(told) == ["weft_width_mm"]
+        and "not below the weft spacing 2.857 mm" in told["weft_width_mm"]
+    )
 
     session.change("weft_width_mm", "2.5")
     assert not session.refused and session.good.fabric.weft.width == 2.5
@@ -87,7 +100,9 @@ def test_crimp_gives_thickness_and_thickness_crimp():
     session.edit(session.row.changed(weft_crimp="", weft_thickness_mm=repr(thickness)))
     roles = {quantity.column: quantity for quantity in session.quantities()}
     assert roles["weft_thickness_mm"].role == "identifies"
-    assert roles["weft_crimp"].role == "follows" and roles["weft_crimp"].model == pytest.approx(0.004, rel=1e-9)
+    assert roles["weft_crimp"].role == "follows" and roles["weft_crimp"].model == pytest.approx(
+        0.004, rel=1e-9
+    )
 
 
 def test_undo_and_redo_are_each_others_inverse_over_random_edits():
@@ -141,7 +156,9 @@ def test_figures_are_those_of_the_model(name):
     found = answer(edited(ROWS[name]))
     told = {figure.key: figure for figure in figures(found)}
     fabric = identify(ROWS[name])[name]
-    assert told["identified.fabric_thickness_mm"].value == pytest.approx(fabric.fabric_thickness, rel=1e-9)
+    assert told["identified.fabric_thickness_mm"].value == pytest.approx(
+        fabric.fabric_thickness, rel=1e-9
+    )
     assert told["identified.weft.crimp"].value == pytest.approx(100 * fabric.weft.crimp, rel=1e-9)
     assert 20 < told["volumes.yarn_volume_fraction"].value < 90
     assert ("volumes.areal_density_g_m2" in told) == ("tex" in " ".join(edited(ROWS[name]).cells))
@@ -168,9 +185,21 @@ def test_saving_adds_one_line_and_leaves_every_other_byte(here, family, style):
     elif style == "semicolons":
         header = "name;over;under;harness;step;pattern;weft_density_per_cm;weft_width_mm;weft_crimp_percent"
         raw = f"{header}\nmine;;;;;;3,5;2,4;0,4\n".encode()
-        own = {"plain": (), "twill": ("over", "under"), "satin": ("harness", "step"), "pattern": ("pattern",)}[family]
+        own = {
+            "plain": (),
+            "twill": ("over", "under"),
+            "satin": ("harness", "step"),
+            "pattern": ("pattern",),
+        }[family]
         columns = [c for c in header.split(";") if c in own or c.startswith(("name", "weft"))]
-        values = {"over": "2", "under": "2", "harness": "5", "step": "2", "pattern": "ou/uo", "name": "mine"}
+        values = {
+            "over": "2",
+            "under": "2",
+            "harness": "5",
+            "step": "2",
+            "pattern": "ou/uo",
+            "name": "mine",
+        }
         values |= dict(zip(columns[-3:], ("3,5", "2,4", "0,4")))
         raw = (";".join(columns) + "\n" + ";".join(values[c] for c in columns) + "\n").encode()
     path.write_bytes(raw)
@@ -216,7 +245,9 @@ def test_a_row_with_line_breaks_in_a_cell_is_changed_as_a_whole(here):
 
 def test_a_new_column_is_added_to_the_header_alone(here):
     path = here / "families" / "satin.csv"
-    path.write_text("name,harness,step,weft_density_per_mm,weft_width_mm,weft_crimp\ns,5,2,0.7,1.2,0.003\n")
+    path.write_text(
+        "name,harness,step,weft_density_per_mm,weft_width_mm,weft_crimp\ns,5,2,0.7,1.2,0.003\n"
+    )
     row = edited(read_family(path)["s"]).changed(name="t", section="flat", lateral_height_mm="0.01")
     assert "lateral_height_mm" in save_row(row, "families").added
     first, second, _ = path.read_text().splitlines()
@@ -226,7 +257,9 @@ def test_a_new_column_is_added_to_the_header_alone(here):
 
 def test_a_header_with_blank_cells_at_its_end_takes_new_columns_in_their_place(here):
     path = here / "families" / "satin.csv"
-    path.write_text("name;harness;step;weft_density_per_mm;weft_width_mm;weft_crimp;;\ns;5;2;0,7;1,2;0,003;;\n")
+    path.write_text(
+        "name;harness;step;weft_density_per_mm;weft_width_mm;weft_crimp;;\ns;5;2;0,7;1,2;0,003;;\n"
+    )
     row = edited(read_family(path)["s"]).changed(name="t", section="flat", lateral_height_mm="0.01")
     save_row(row, "families")
     assert path.read_text().splitlines()[1] == "s;5;2;0,7;1,2;0,003;;"

@@ -21,11 +21,19 @@ def tension():
     """A symmetric law on curves of constant k, and on a grid (k NaN)."""
     rows = [(np.nan, a, b) for a in np.linspace(0, 0.004, 4) for b in np.linspace(0, 0.004, 4)]
     for k in RATIOS:
-        for s in np.linspace(0.004, 0.0, 6)[:-1]:  # the grid has rest; not in the order in which they are drawn
+        for s in np.linspace(0.004, 0.0, 6)[
+            :-1
+        ]:  # the grid has rest; not in the order in which they are drawn
             rows.append((k, 0.0, s) if np.isinf(k) else (k, s / max(k, 1), s * min(k, 1)))
     k, e11, e22 = np.array(rows).T
     law = [2e4 * a * (1 + 100 * a + 50 * b) for a, b in ((e11, e22), (e22, e11))]
-    return {"k": k.tolist(), "E11": e11.tolist(), "E22": e22.tolist(), "T11": law[0].tolist(), "T22": law[1].tolist()}
+    return {
+        "k": k.tolist(),
+        "E11": e11.tolist(),
+        "E22": e22.tolist(),
+        "T11": law[0].tolist(),
+        "T22": law[1].tolist(),
+    }
 
 
 def shear(depth=0.002):
@@ -73,7 +81,10 @@ def test_surfaces_hold_every_point_once():
 def test_shear_is_one_curve_read_off_as_moment_and_as_force():
     columns = shear()
     (axes,) = plot_shear_curve(columns, allowed=0.011).axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("shear angle, degrees", "moment of a cell, N mm")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (
+        "shear angle, degrees",
+        "moment of a cell, N mm",
+    )
     assert axes.lines[0].get_ydata() == pytest.approx(columns["moment_N_mm"])
     (right,) = axes.child_axes
     assert right.get_ylabel() == "force along a side, N/mm"
@@ -86,14 +97,19 @@ def test_shear_is_one_curve_read_off_as_moment_and_as_force():
 def test_shear_shows_the_angle_at_which_contact_ceases_to_be_valid():
     (axes,) = plot_shear_curve(shear(), allowed=0.011).axes
     assert axes.lines[1].get_xdata() == pytest.approx([5.5, 5.5])
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["penetration 0.011 mm, 5.5°"]
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
+        "penetration 0.011 mm, 5.5°"
+    ]
     (axes,) = plot_shear_curve(shear(depth=0.0)).axes
     assert len(axes.lines) == 1 and axes.get_legend() is None
 
 
 def test_cuts_show_displacements_larger_over_the_cell_at_rest():
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
-    cuts = {name: [Outline(Body.named(name), square, square * [1.0, 0.9])] for name in ("weft_1", "warp_1")}
+    cuts = {
+        name: [Outline(Body.named(name), square, square * [1.0, 0.9])]
+        for name in ("weft_1", "warp_1")
+    }
     first, second = plot_crushing(cuts, 5.0).axes
     assert (first.get_xlabel(), second.get_xlabel()) == ("x mm", "y mm")
     assert "\u00d7 5" in first.get_title("right") and first.get_title("left") == "along weft 1"
@@ -117,6 +133,9 @@ def test_figures_are_those_of_the_axes_given():
     figure = Figure()
     assert plot_tension_curves(tension(), figure.subplots()) is figure
     figure = Figure()
-    assert plot_tension_surface(tension(), figure.subplots(1, 2, subplot_kw={"projection": "3d"})) is figure
+    assert (
+        plot_tension_surface(tension(), figure.subplots(1, 2, subplot_kw={"projection": "3d"}))
+        is figure
+    )
     figure = Figure()
     assert plot_shear_curve(shear(), figure.subplots()) is figure

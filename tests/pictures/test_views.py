@@ -26,7 +26,9 @@ from fabric_cad.weave.bodies import Body, Surface, SurfaceKind
 @pytest.fixture(scope="module")
 def mesh():
     return together(
-        box("weft_1", (0, -1.2, 0)), box("weft_2", (0, 1.2, 0)), box("warp_1", (0, 0, HEIGHT), turn=np.pi / 2)
+        box("weft_1", (0, -1.2, 0)),
+        box("weft_2", (0, 1.2, 0)),
+        box("warp_1", (0, 0, HEIGHT), turn=np.pi / 2),
     )
 
 
@@ -69,13 +71,17 @@ def series(mesh, displacement, folder):
         )
         for number in range(3)
     ]
-    write_series(mesh, states, folder / "tension.pvd", {"displacement": "mm", "pressure_MPa": "MPa"})
+    write_series(
+        mesh, states, folder / "tension.pvd", {"displacement": "mm", "pressure_MPa": "MPa"}
+    )
     return states
 
 
 def test_a_series_holds_every_state_at_its_deformed_points(mesh, displacement, tmp_path):
     states = series(mesh, displacement, tmp_path)
-    assert {path.name for path in tmp_path.iterdir()} == {"tension.pvd"} | {f"tension_state_{n}.vtu" for n in range(3)}
+    assert {path.name for path in tmp_path.iterdir()} == {"tension.pvd"} | {
+        f"tension_state_{n}.vtu" for n in range(3)
+    }
     reader = pyvista.get_reader(tmp_path / "tension.pvd")
     assert reader.time_values == [0.0, 0.5, 1.0]
     for number, (time, state) in enumerate(zip(reader.time_values, states)):
@@ -89,7 +95,12 @@ def test_a_series_holds_every_state_at_its_deformed_points(mesh, displacement, t
         assert (grid.cell_data["yarn"] == mesh.body + 1).all()
         assert (grid.cell_data["direction"] == (mesh.body == 2)).all()
         facts = {name: grid.field_data[name][0] for name in ("state", "row", "E11", "TimeValue")}
-        assert facts == {"state": f"state {number}", "row": "three", "E11": 0.001 * number, "TimeValue": time}
+        assert facts == {
+            "state": f"state {number}",
+            "row": "three",
+            "E11": 0.001 * number,
+            "TimeValue": time,
+        }
         assert list(grid.field_data["yarn_names"]) == [yarn.name for yarn in mesh.yarns]
         assert list(grid.field_data["units"]) == ["displacement: mm", "pressure_MPa: MPa"]
 
@@ -98,8 +109,14 @@ def test_a_series_takes_only_what_fits_the_mesh(mesh, displacement, tmp_path):
     path = tmp_path / "wrong.pvd"
     for wrong, message in (
         ({"displacement": displacement[:, 0]}, r"displacement has shape \(567,\), not \(567, 3\)"),
-        ({"point_data": {"force": np.zeros((2, 3))}}, r"point data force has shape \(2, 3\), not \(567, 3\)"),
-        ({"cell_data": {"strain": np.zeros(567)}}, r"cell data strain has shape \(567,\), not \(288,\)"),
+        (
+            {"point_data": {"force": np.zeros((2, 3))}},
+            r"point data force has shape \(2, 3\), not \(567, 3\)",
+        ),
+        (
+            {"cell_data": {"strain": np.zeros(567)}},
+            r"cell data strain has shape \(567,\), not \(288,\)",
+        ),
         ({"cell_data": {"yarn": mesh.body}}, "cell data yarn is written anyway"),
     ):
         state = State(**{"time": 0.0, "label": "", "displacement": displacement} | wrong)
@@ -123,7 +140,9 @@ def test_stress_of_a_straight_yarn_pulled_and_turned_is_the_closed_form():
         columns = yarn_stress(yarn, moved - yarn.points, law).columns()
         assert columns.pop("strain_fibre") == pytest.approx(green, rel=1e-9)
         assert columns.pop("stress_fibre_MPa") == pytest.approx(35000 * green * stretch, rel=1e-9)
-        assert len(columns) == 10 and max(np.abs(values).max() for values in columns.values()) < 1e-8
+        assert (
+            len(columns) == 10 and max(np.abs(values).max() for values in columns.values()) < 1e-8
+        )
 
 
 def test_stress_stays_with_the_fibres_in_simple_shear():
@@ -154,9 +173,13 @@ def test_a_cut_follows_its_material_points(mesh):
     gradient = np.diag([0.02, 0.0, -0.1])
     outlines = cut_along(mesh, mesh.points @ gradient, "weft_2")
     assert sorted(outline.yarn.name for outline in outlines) == ["warp_1", "weft_2"]
-    for outline, width, level in zip(sorted(outlines, key=lambda each: each.yarn.name), (WIDTH, LENGTH), (HEIGHT, 0.0)):
+    for outline, width, level in zip(
+        sorted(outlines, key=lambda each: each.yarn.name), (WIDTH, LENGTH), (HEIGHT, 0.0)
+    ):
         low, high = outline.rest.min(axis=0), outline.rest.max(axis=0)
-        assert [*low, *high] == pytest.approx([-width / 2, level - HEIGHT / 2, width / 2, level + HEIGHT / 2])
+        assert [*low, *high] == pytest.approx(
+            [-width / 2, level - HEIGHT / 2, width / 2, level + HEIGHT / 2]
+        )
         assert outline.deformed == pytest.approx(outline.rest * [1.02, 0.9])
         assert outline.rest[0] == pytest.approx(outline.rest[-1])
     with pytest.raises(ValueError, match="no yarn is called warp_2"):
@@ -179,7 +202,14 @@ def twill(tmp_path_factory):
     """A twill 3*2 with narrow gaps: its floats' edges leap within them."""
     from fabric_cad import build_cell, identify, mesh_cell, mesh_options, read_mesh
 
-    row = {"name": "t", "over": 3, "under": 2, "weft_density_per_mm": 0.35, "weft_width_mm": 2.4, "weft_crimp": 0.004}
+    row = {
+        "name": "t",
+        "over": 3,
+        "under": 2,
+        "weft_density_per_mm": 0.35,
+        "weft_width_mm": 2.4,
+        "weft_crimp": 0.004,
+    }
     fabric, folder = identify(table("twill", row))["t"], tmp_path_factory.mktemp("twill")
     build_cell(fabric).write_step(folder / "t.step")
     mesh_cell(folder / "t.step", fabric, mesh_options(fabric, across=12), folder / "t.msh")
@@ -192,10 +222,18 @@ def test_the_edges_drawn_of_a_twill_run_along_its_yarns_or_around_their_ends(twi
     for surface, quads in twill.surfaces.items():
         ends[quads] |= surface.kind in (SurfaceKind.START, SurfaceKind.END)
     inner = lines[~ends[lines].all(axis=1)]
-    along = {tuple(sorted(pair)) for corner in range(4) for pair in twill.hexahedra[:, [corner, corner + 4]].tolist()}
+    along = {
+        tuple(sorted(pair))
+        for corner in range(4)
+        for pair in twill.hexahedra[:, [corner, corner + 4]].tolist()
+    }
     assert {tuple(sorted(line)) for line in inner.tolist()} <= along
     # and each yarn's two edges are drawn from end to end
-    layers = len(twill.hexahedra) // len(twill.yarns) // len(twill.surfaces[Surface.named("weft_1_start")])
+    layers = (
+        len(twill.hexahedra)
+        // len(twill.yarns)
+        // len(twill.surfaces[Surface.named("weft_1_start")])
+    )
     assert len(inner) == len(twill.yarns) * 2 * layers
 
 
@@ -213,7 +251,9 @@ def test_a_picture_has_a_scale_bar_of_round_length_beside_the_cell(mesh, tmp_pat
     assert (image[:70, :400] == 255).all() and (titled[:70, :400].max(axis=2) < 100).any()
 
 
-@pytest.mark.parametrize("screen", [(1366, 768), (1280, 720), (1920, 1080), (800, 1280), (5120, 2880)])
+@pytest.mark.parametrize(
+    "screen", [(1366, 768), (1280, 720), (1920, 1080), (800, 1280), (5120, 2880)]
+)
 def test_the_window_fits_the_screen(screen):
     width, height = window_size(screen)
     assert width <= 0.8 * screen[0] and height <= 0.8 * screen[1]
@@ -245,7 +285,9 @@ print(*sizes[0])
 
 def environment():
     """This process' own, with the tests' helpers to be imported, and a display left to be named."""
-    found = {name: value for name, value in os.environ.items() if name != "VTK_DEFAULT_OPENGL_WINDOW"}
+    found = {
+        name: value for name, value in os.environ.items() if name != "VTK_DEFAULT_OPENGL_WINDOW"
+    }
     return found | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
 
 
@@ -265,14 +307,18 @@ def test_hidden_yarns_are_not_drawn(mesh, displacement, tmp_path):
 
 def test_the_state_is_named_above_the_picture(mesh, displacement, tmp_path):
     draw_deformed(mesh, displacement, tmp_path / "plain.png", field=mesh.points[:, 0])
-    draw_deformed(mesh, displacement, tmp_path / "named.png", field=mesh.points[:, 0], title="row: k = 1")
+    draw_deformed(
+        mesh, displacement, tmp_path / "named.png", field=mesh.points[:, 0], title="row: k = 1"
+    )
     plain, named = picture(tmp_path / "plain.png"), picture(tmp_path / "named.png")
     assert (plain[:70, :400] == 255).all() and (named[:70, :400] < 100).any()
 
 
 def test_the_bar_ends_where_the_values_that_are_seen_do(mesh, tmp_path):
     """What the picture hides, here the underside, does not stretch its colours."""
-    field = np.where(mesh.points[:, 2] > mesh.points[:, 2].max() - 1e-9, mesh.points[:, 1] / 2 + 1, 0.0)
+    field = np.where(
+        mesh.points[:, 2] > mesh.points[:, 2].max() - 1e-9, mesh.points[:, 1] / 2 + 1, 0.0
+    )
     hidden = np.where(mesh.points[:, 2] < mesh.points[:, 2].min() + 1e-9, -100.0, field)
     rest = np.zeros_like(mesh.points)
     for name, values in (("seen", field), ("hidden", hidden)):
@@ -288,7 +334,9 @@ def test_colours_of_a_field(mesh, displacement, tmp_path):
     signed = picture(path)
     assert min(share(signed, orange), share(signed, blue)) > 0.05
     some = np.where(mesh.points[:, 1] > 0, 3.0, np.nan)
-    draw_deformed(mesh, 0 * displacement, path, field=some, label="pressure, MPa", limits=(0.0, 3.0))
+    draw_deformed(
+        mesh, 0 * displacement, path, field=some, label="pressure, MPa", limits=(0.0, 3.0)
+    )
     image = picture(path)
     yellow = share(image, lambda red, green, blue: (red > 150) & (green > 130) & (blue < 110))
     assert yellow > 0.05 and share(image, grey) > 0.05
@@ -318,5 +366,7 @@ def test_ends_of_a_colour_bar_hold_every_value():
     rng = np.random.default_rng(3)
     for values in np.exp(rng.normal(scale=5, size=(500, 1))) * rng.normal(size=(500, 4)):
         low, high, steps = limits_of(values)
-        assert low <= values.min() + 1e-9 * (high - low) and high >= values.max() - 1e-9 * (high - low)
+        assert low <= values.min() + 1e-9 * (high - low) and high >= values.max() - 1e-9 * (
+            high - low
+        )
         assert 3 <= steps <= 5

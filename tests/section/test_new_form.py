@@ -76,7 +76,9 @@ def _(form: Eased, direction, side):
 
 
 def edge_rise(form, contact):
-    return eased_rise(form, contact.rise, contact.slope, contact.p, contact.width / 2 - contact.half_chord)
+    return eased_rise(
+        form, contact.rise, contact.slope, contact.p, contact.width / 2 - contact.half_chord
+    )
 
 
 @free_side.register
@@ -90,7 +92,12 @@ def _(form: Eased, contact, turns):
 def _(form: Eased, direction):
     def claim(plateau):
         return Claim(
-            lambda solution: ~(edge_rise(form, solution.contacts[direction, plateau]) < solution.thickness[direction]),
+            lambda solution: (
+                ~(
+                    edge_rise(form, solution.contacts[direction, plateau])
+                    < solution.thickness[direction]
+                )
+            ),
             lambda solution, row: f"{direction}_width_mm",
             lambda solution, row: f"the eased edges of the {direction} do not fit",
         )
@@ -130,12 +137,18 @@ def made(eased, tmp_path_factory):
     folder = tmp_path_factory.mktemp("eased")
     measured = table("plain", ROW)
     report = make_cell(measured, folder)
-    return identify(measured)["eased_plain"], report, read_step(folder / "eased_plain" / "eased_plain.step")
+    return (
+        identify(measured)["eased_plain"],
+        report,
+        read_step(folder / "eased_plain" / "eased_plain.step"),
+    )
 
 
 def test_rows_may_name_it_and_keep_its_rules(eased):
     assert list(FORMS) == ["lenticular", "flat", "round", "eased"]
-    with pytest.raises(InputError, match="weft_contact_top_mm: an eased section needs a contact chord below"):
+    with pytest.raises(
+        InputError, match="weft_contact_top_mm: an eased section needs a contact chord below"
+    ):
         table("plain", {key: value for key, value in ROW.items() if key != "weft_contact_top_mm"})
 
     too_wide = table("plain", ROW | {"weft_width_mm": 3.9, "weft_contact_top_mm": 0.4})
@@ -149,7 +162,9 @@ def test_it_is_identified_beside_other_forms(eased):
     for row in (ROW, lenticular):
         assert both[row["name"]] == identify(table("plain", row))[row["name"]]
 
-    free, usual = (both[name].weft.free_sides["high", "turn"] for name in ("eased_plain", "lenticular"))
+    free, usual = (
+        both[name].weft.free_sides["high", "turn"] for name in ("eased_plain", "lenticular")
+    )
     assert free.q > usual.q  # its edges rise less, and its free side falls deeper
 
     measured = table("plain", lenticular, ROW)
@@ -161,14 +176,18 @@ def test_its_sections_touch_their_envelope_and_bend_at_the_chord_without_a_kink(
     fabric, _, _ = made
     for swept in swept_yarns(fabric):
         for section in swept.sections:
-            outline = np.concatenate([strip.at(np.linspace(0, 1, 101)) for strip in section.strips.values()])
+            outline = np.concatenate(
+                [strip.at(np.linspace(0, 1, 101)) for strip in section.strips.values()]
+            )
             solved = fabric.directions[swept.yarn.direction]
             assert np.ptp(outline[:, 0]) == pytest.approx(solved.width, rel=1e-12)
             assert np.ptp(outline[:, 1]) == pytest.approx(solved.thickness, rel=1e-6)
             for side, level in (("bottom", "lower"), ("top", "upper")):
                 before, after = section.strips[f"left_{level}"].poles, section.strips[side].poles
                 steps = [before[-1] - before[-2], after[1] - after[0]]
-                assert steps[0][1] / steps[0][0] == pytest.approx(steps[1][1] / steps[1][0], abs=1e-9)
+                assert steps[0][1] / steps[0][0] == pytest.approx(
+                    steps[1][1] / steps[1][0], abs=1e-9
+                )
 
 
 def test_its_solids_are_valid_and_its_yarns_touch(made):

@@ -38,7 +38,10 @@ def test_states_count_over_all_jobs_and_time_left_is_exact_where_states_are_alik
     first, *heard = run(states, 6.0)
     assert (first.state, first.states, first.seconds, first.left) == (0, sum(states), 0.0, None)
     assert [progress.state for progress in heard[::2]] == list(range(1, sum(states) + 1))
-    assert [progress.left for progress in heard[:2]] == [None, None]  # the first state says nothing of the others
+    assert [progress.left for progress in heard[:2]] == [
+        None,
+        None,
+    ]  # the first state says nothing of the others
     for progress in heard[2:]:
         assert progress.seconds + progress.left == pytest.approx(6.0 * sum(states))
     assert sum(states) == 1 or heard[-1].left == 0.0
@@ -47,7 +50,9 @@ def test_states_count_over_all_jobs_and_time_left_is_exact_where_states_are_alik
 def test_what_is_expected_grows_with_states_and_elements():
     (first, *_) = run((4,), 1.0)
     assert first.expected == expected_seconds(4, 2000) == pytest.approx(4 * 2 * SECONDS_A_STATE)
-    assert announced(first).startswith(f"4 states on 2000 hexahedra: about {clock_words(first.expected)} (likely ")
+    assert announced(first).startswith(
+        f"4 states on 2000 hexahedra: about {clock_words(first.expected)} (likely "
+    )
 
 
 def test_an_increment_is_told_with_the_time_left_once_it_is_known():
@@ -59,7 +64,15 @@ def test_an_increment_is_told_with_the_time_left_once_it_is_known():
 
 @pytest.mark.parametrize(
     ("seconds", "words"),
-    [(0.4, "5 s"), (12, "10 s"), (54, "55 s"), (61, "1 min"), (200, "3 min"), (3590, "1 h"), (7900, "2 h 10 min")],
+    [
+        (0.4, "5 s"),
+        (12, "10 s"),
+        (54, "55 s"),
+        (61, "1 min"),
+        (200, "3 min"),
+        (3590, "1 h"),
+        (7900, "2 h 10 min"),
+    ],
 )
 def test_a_time_is_told_no_finer_than_it_is_known(seconds, words):
     assert clock_words(seconds) == words

@@ -57,7 +57,10 @@ class StripCase(LoadCase[float]):
         return [Line(number, number, {"E11": state}) for number, state in enumerate(states)]
 
     def measures(self, state, deformed):
-        return {"force_N": float(deformed.reached.forces[0, 0]), "width_mm": float(deformed.vectors[1, 1])}
+        return {
+            "force_N": float(deformed.reached.forces[0, 0]),
+            "width_mm": float(deformed.vectors[1, 1]),
+        }
 
     def label(self, row):
         return f"strip at {100 * row['E11']:g} %"
@@ -101,7 +104,9 @@ def test_its_table_of_settings_is_read_and_checked(families):
         read_settings(families, "plain")
 
     (families / "simulation.toml").write_text("")
-    with pytest.raises(InputError, match=r"simulation.toml: strain: this key of \[strip\] is missing"):
+    with pytest.raises(
+        InputError, match=r"simulation.toml: strain: this key of \[strip\] is missing"
+    ):
         read_settings(families, "plain")
 
 
@@ -134,12 +139,16 @@ def test_it_runs_through_table_report_series_and_summary(families, capsys):
         rest, pulled = csv.DictReader(file)
     assert tuple(rest) == ("E11", "force_N", "width_mm", *CONDITION)
     assert float(rest["force_N"]) == 0 < float(pulled["force_N"])
-    assert float(pulled["width_mm"]) == pytest.approx((1 - 0.5 * 0.002) * float(rest["width_mm"]), rel=1e-8)
+    assert float(pulled["width_mm"]) == pytest.approx(
+        (1 - 0.5 * 0.002) * float(rest["width_mm"]), rel=1e-8
+    )
 
     report = json.loads((folder / "strip.json").read_text())
     assert report["settings"]["strip"] == {"strain": 0.002, "contraction": 0.5, "points": 1}
     assert report["solver"]["finished"] and report["contact"]["states_beyond"] == 0
-    assert {"strip.inp", "strip.frd", "strip.csv", "strip.pvd", "strip_state_1.vtu"} <= set(report["files"])
+    assert {"strip.inp", "strip.frd", "strip.csv", "strip.pvd", "strip_state_1.vtu"} <= set(
+        report["files"]
+    )
     assert f"strip pulls with {report['last_force_N']:.3f} N" in said and "strip.json" in said
 
 
@@ -148,7 +157,9 @@ def test_it_is_a_depth_of_studies(families, tmp_path):
     settings = read_settings(families, "plain_flat")
     assert list(depths())[-1] == "strip"
     assert {"strip.force_N", "strip.max_penetration_mm"} <= set(figure_names("strip", settings))
-    assert "is a figure of depth strip, this study is of depth mesh" in figure_fault("strip.force_N", "mesh")
+    assert "is a figure of depth strip, this study is of depth mesh" in figure_fault(
+        "strip.force_N", "mesh"
+    )
 
     row, _ = find_row(families, "plain_flat")
     outcome = run_unit(row, Work("strip", {}, 300.0, settings), None)

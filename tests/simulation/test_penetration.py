@@ -48,11 +48,15 @@ def test_boxes_that_touch_or_part_do_not_overlap(seed):
     rng = np.random.default_rng(seed)
     turned = Rotation.random(random_state=rng)
     for gap in (0.0, 1e-6, 0.1):
-        mesh = together(box("weft_1"), warp(*rng.uniform(-0.2, 0.2, 2), -gap, rng.uniform(-0.5, 0.5)))
+        mesh = together(
+            box("weft_1"), warp(*rng.uniform(-0.2, 0.2, 2), -gap, rng.uniform(-0.5, 0.5))
+        )
         found = penetration(mesh, turned.apply(mesh.points))
         assert found.depth < 1e-14
         if gap:
-            assert (found.depth, found.first, found.second) == (0.0, None, None) and np.isnan(found.place).all()
+            assert (found.depth, found.first, found.second) == (0.0, None, None) and np.isnan(
+                found.place
+            ).all()
 
 
 @pytest.mark.parametrize("shear", [0.0, 0.2])
@@ -127,7 +131,9 @@ def test_distance_to_warped_quadrilaterals(seed):
     points = rng.uniform(-1, 2, (20, 3)) * [1, 1, 0.5]
     s, t = (each.reshape(-1, 1) for each in np.meshgrid(*2 * [np.linspace(0, 1, 201)]))
     weights = np.hstack([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t])
-    sampled = np.linalg.norm(np.einsum("sc,ncd->nsd", weights, corners) - points[:, None], axis=2).min(axis=1)
+    sampled = np.linalg.norm(
+        np.einsum("sc,ncd->nsd", weights, corners) - points[:, None], axis=2
+    ).min(axis=1)
     found = distance_to_quads(points, corners)
     assert (found <= sampled + 1e-12).all()
     # half a step of the grid is at most 0.005 of such a quadrilateral away from the nearest place

@@ -2,7 +2,19 @@
 
 import numpy as np
 import pytest
-from jobs import BLOCK, LENGTH, OUTPUT, POISSON, STIFFNESS, TWO_BLOCKS, YOUNG, needs_ccx, pressed, pulled, step
+from jobs import (
+    BLOCK,
+    LENGTH,
+    OUTPUT,
+    POISSON,
+    STIFFNESS,
+    TWO_BLOCKS,
+    YOUNG,
+    needs_ccx,
+    pressed,
+    pulled,
+    step,
+)
 
 from fabric_cad.simulation.results import CONTACT_FORCE, read_dat, read_frd, read_sta
 from fabric_cad.simulation.solver import find_solver, run_solver
@@ -41,8 +53,14 @@ def test_uniaxial_patch(tmp_path, nlgeom):
     assert state.fields["TOSTRAIN"][:, 0] == pytest.approx(strain, rel=NODAL)
     assert state.fields["TOSTRAIN"][:, 1:3] == pytest.approx(-POISSON * strain, rel=NODAL)
     assert state.fields["DISP"][[1, 2, 5, 6], 0] == pytest.approx(u)
-    assert state.components("DISP") == ("D1", "D2", "D3") and state.components("FORC") == ("F1", "F2", "F3")
-    assert state.fields["FORC"][:, 0] == pytest.approx(np.array([-1, 1, 1, -1, -1, 1, 1, -1]) * force / 4, rel=1e-5)
+    assert state.components("DISP") == ("D1", "D2", "D3") and state.components("FORC") == (
+        "F1",
+        "F2",
+        "F3",
+    )
+    assert state.fields["FORC"][:, 0] == pytest.approx(
+        np.array([-1, 1, 1, -1, -1, 1, 1, -1]) * force / 4, rel=1e-5
+    )
     (reaction,), (work,), (volume,) = (
         printed(records, *key) for key in (("RF", "RIGHT"), ("ELSE", "BLOCK"), ("EVOL", "BLOCK"))
     )
@@ -54,14 +72,18 @@ def test_uniaxial_patch(tmp_path, nlgeom):
 @needs_ccx
 def test_time_runs_on_from_step_to_step(tmp_path):
     steps = ((0.02, "0.5, 1."), (0.04, "1., 2."))
-    states, records = run(tmp_path, BLOCK + "".join(step(pulled(u), static, direct=True) for u, static in steps))
+    states, records = run(
+        tmp_path, BLOCK + "".join(step(pulled(u), static, direct=True) for u, static in steps)
+    )
     attempts = read_sta(tmp_path / "job.sta")
     assert [(state.step, state.increment) for state in states] == [(1, 1), (1, 2), (2, 1), (2, 2)]
     assert [state.time for state in states] == pytest.approx([0.5, 1, 2, 3])
     assert [p.time for p in printed(records, "RF", "RIGHT")] == pytest.approx([0.5, 1, 2, 3])
     assert [at.total_time for at in attempts] == pytest.approx([0.5, 1, 2, 3])
     assert [at.step_time for at in attempts] == pytest.approx([0.5, 1, 1, 2])
-    assert [state.fields["DISP"][1, 0] for state in states] == pytest.approx([0.01, 0.02, 0.03, 0.04])
+    assert [state.fields["DISP"][1, 0] for state in states] == pytest.approx(
+        [0.01, 0.02, 0.03, 0.04]
+    )
 
 
 @needs_ccx
@@ -69,7 +91,14 @@ def test_two_blocks_pressed_together(tmp_path):
     u = 0.01
     (state,), records = run(tmp_path, TWO_BLOCKS + pressed(u))
     pressure = u / (2 / YOUNG + 1 / STIFFNESS)  # two cubes and the contact in a row
-    assert state.components("CONTACT") == ("COPEN", "CSLIP1", "CSLIP2", "CPRESS", "CSHEAR1", "CSHEAR2")
+    assert state.components("CONTACT") == (
+        "COPEN",
+        "CSLIP1",
+        "CSLIP2",
+        "CPRESS",
+        "CSHEAR1",
+        "CSHEAR2",
+    )
     contact = state.fields["CONTACT"]
     assert contact.shape == (16, 6)
     assert contact[8:12, 3] == pytest.approx(pressure, rel=1e-5)
@@ -82,7 +111,9 @@ def test_two_blocks_pressed_together(tmp_path):
     assert energy.values == pytest.approx([pressure**2 / (2 * STIFFNESS)], rel=1e-5)
     assert number.values[0] > 0
     (force,) = printed(records, "CF", "ABOVE/BELOW")
-    assert force.values[CONTACT_FORCE["force"]] == pytest.approx([0, 0, pressure], rel=1e-5, abs=1e-9)
+    assert force.values[CONTACT_FORCE["force"]] == pytest.approx(
+        [0, 0, pressure], rel=1e-5, abs=1e-9
+    )
     assert force.values[CONTACT_FORCE["area"]] == pytest.approx(1)
     assert force.values[CONTACT_FORCE["normal force"]] == pytest.approx(-pressure, rel=1e-5)
     assert force.values[CONTACT_FORCE["mean normal"]] == pytest.approx([0, 0, -1], abs=1e-9)
@@ -93,12 +124,21 @@ def test_equations_hide_the_reference_node_but_not_the_face(tmp_path):
     tied = "".join(f"*EQUATION\n2\n{node}, 1, 1., 9, 1, -1.\n" for node in (2, 3, 6, 7))
     listing = "*NODE PRINT, NSET=reference\nU, RF\n"
     load = pulled(0.02).replace("right", "9")
-    text = BLOCK + "*NODE, NSET=reference\n9, 5, 5, 5\n" + tied + step(load, nlgeom=False, output=OUTPUT + listing)
+    text = (
+        BLOCK
+        + "*NODE, NSET=reference\n9, 5, 5, 5\n"
+        + tied
+        + step(load, nlgeom=False, output=OUTPUT + listing)
+    )
     (state,), records = run(tmp_path, text)
     assert state.fields["DISP"].shape == (8, 3)  # a node of no element is not in the file
     assert printed(records, "RF", "RIGHT")[0].values[0] == pytest.approx(10)
-    assert printed(records, "RF", "REFERENCE")[0].values == pytest.approx(np.array([[9, 0, 0, 0]]), abs=1e-9)
-    assert printed(records, "U", "REFERENCE")[0].values == pytest.approx(np.array([[9, 0.02, 0, 0]]))
+    assert printed(records, "RF", "REFERENCE")[0].values == pytest.approx(
+        np.array([[9, 0, 0, 0]]), abs=1e-9
+    )
+    assert printed(records, "U", "REFERENCE")[0].values == pytest.approx(
+        np.array([[9, 0.02, 0, 0]])
+    )
 
 
 @needs_ccx
@@ -120,7 +160,11 @@ def test_a_file_cut_off_anywhere_gives_the_states_before(tmp_path):
         found = read_frd(cut)
         counts.append(len(found))
         for ours, whole in zip(found, states):
-            assert (ours.step, ours.increment, ours.time) == (whole.step, whole.increment, whole.time)
+            assert (ours.step, ours.increment, ours.time) == (
+                whole.step,
+                whole.increment,
+                whole.time,
+            )
             assert len(found) == 1 or ours.fields.keys() == whole.fields.keys()
             for name, values in ours.fields.items():
                 assert np.array_equal(values, whole.fields[name])
@@ -138,7 +182,9 @@ def test_other_files_are_refused(tmp_path):
     path.write_text("a letter to a friend\n")
     with pytest.raises(InputError, match="not a .frd file"):
         read_frd(path)
-    path.write_bytes(b"    1C\n    2C                             8                                     3\n\x01\x00")
+    path.write_bytes(
+        b"    1C\n    2C                             8                                     3\n\x01\x00"
+    )
     with pytest.raises(InputError, match="binary"):
         read_frd(path)
 

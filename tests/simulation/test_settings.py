@@ -44,10 +44,16 @@ def test_a_row_has_its_own_values(tmp_path):
         ("[contact]\nkind = 'glue'\n", r":2: kind: 'glue' is neither"),
         ("[tension]\nratios = [1, -2]\n", r":2: ratios: \[1, -2\] is not a list"),
         ("[tension]\npoints = 2.5\n", r":2: points: 2.5 is not a whole number from 1 to 100"),
-        ("[rows.plain.shear]\n# so far\nangle_deg = 90\n", r":3: angle_deg: 90 is not .* \(row plain\)"),
+        (
+            "[rows.plain.shear]\n# so far\nangle_deg = 90\n",
+            r":3: angle_deg: 90 is not .* \(row plain\)",
+        ),
         ("[yarn]\nE1_MPa = \n", r":2: "),
         ("yarn = 3\n", r"yarn: is not a table"),
-        ("[yarn]\nnu23 = 0.9\nnu12 = 0.9\nnu13 = 0.1\nE2_MPa = 35000\nE3_MPa = 35000\n", "no stable material"),
+        (
+            "[yarn]\nnu23 = 0.9\nnu12 = 0.9\nnu13 = 0.1\nE2_MPa = 35000\nE3_MPa = 35000\n",
+            "no stable material",
+        ),
     ],
 )
 def test_what_is_wrong_is_named_with_its_place(tmp_path, text, said):
@@ -68,7 +74,9 @@ def test_what_is_wrong_is_named_with_its_place(tmp_path, text, said):
     ],
 )
 def test_a_row_that_is_none_is_told(tmp_path, text, said):
-    (tmp_path / "plain.csv").write_text("name,weft_density_per_mm,weft_width_mm,weft_crimp\nplain,0.22,3.2,0.004\n")
+    (tmp_path / "plain.csv").write_text(
+        "name,weft_density_per_mm,weft_width_mm,weft_crimp\nplain,0.22,3.2,0.004\n"
+    )
     with pytest.raises(InputError, match=said):
         read(tmp_path, text)
 
@@ -80,7 +88,9 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path):
 
 
 def test_the_compliance_is_that_of_the_constants(tmp_path):
-    law = read(tmp_path, "[yarn]\nE1_MPa = 100.0\nE2_MPa = 20.0\nE3_MPa = 10.0\nnu12 = 0.3\nnu13 = 0.2\n").yarn
+    law = read(
+        tmp_path, "[yarn]\nE1_MPa = 100.0\nE2_MPa = 20.0\nE3_MPa = 10.0\nnu12 = 0.3\nnu13 = 0.2\n"
+    ).yarn
     strain = law.compliance @ [1.0, 0.0, 0.0]
     assert strain == pytest.approx([0.01, -0.003, -0.002])
     assert law.compliance == pytest.approx(law.compliance.T)
@@ -95,7 +105,10 @@ def test_compaction_doubles_the_modulus_at_its_strain(tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "expected"),
-    [("a = " + 3000 * "[", "nested too deeply"), ("a = " + 5000 * "1", "not TOML that can be read")],
+    [
+        ("a = " + 3000 * "[", "nested too deeply"),
+        ("a = " + 5000 * "1", "not TOML that can be read"),
+    ],
 )
 def test_toml_that_its_reader_chokes_on(tmp_path, text, expected):
     with pytest.raises(InputError, match=f"simulation.toml: .*{expected}"):

@@ -15,7 +15,13 @@ from scipy.integrate import simpson
 
 from fabric_cad.cell.pipeline import find_row
 from fabric_cad.cli import main
-from fabric_cad.decks.keywords import Boundary, Compaction, EngineeringConstants, Material, write_keywords
+from fabric_cad.decks.keywords import (
+    Boundary,
+    Compaction,
+    EngineeringConstants,
+    Material,
+    write_keywords,
+)
 from fabric_cad.decks.model import Load, Touch, model_keywords
 from fabric_cad.measured.shipped import shipped_families
 from fabric_cad.simulation.energy import cell_energy
@@ -67,7 +73,9 @@ def run(folder, mesh, loads, settings=None, name="job", at_once=False):
     """A job whose loads are all reached, without a warning of the solver's."""
     deck = folder / f"{name}.inp"
     write_model(deck, mesh, LATTICE, settings or read_settings(FAMILIES, "plain42"), loads, name)
-    asked = "*CONTACT PRINT, TOTALS=ONLY, FREQUENCY=9999\nCELS\n*END STEP" * ("CONTACT PAIR" in deck.read_text())
+    asked = "*CONTACT PRINT, TOTALS=ONLY, FREQUENCY=9999\nCELS\n*END STEP" * (
+        "CONTACT PAIR" in deck.read_text()
+    )
     deck.write_text(deck.read_text().replace("*END STEP", asked or "*END STEP"))
     if at_once:
         deck.write_text(deck.read_text().replace("*STATIC\n0.95,", "*STATIC\n1.,"))
@@ -145,7 +153,9 @@ def test_yarns_in_contact_hardly_penetrate(reached, mesh):
 def contact_energy(folder, name, time):
     """Energy (N mm) of the penalty at the end of a step, as the solver sums it over its contact springs."""
     (found,) = [
-        each for each in read_dat(folder / f"{name}.dat") if each.quantity == "CELS" and abs(each.time - time) < 1e-6
+        each
+        for each in read_dat(folder / f"{name}.dat")
+        if each.quantity == "CELS" and abs(each.time - time) < 1e-6
     ]
     return float(found.values[0])
 
@@ -176,10 +186,14 @@ def test_a_turned_cell_has_no_stress(folder, mesh):
     turn = np.radians(10)
     across, along = np.sin(turn) * PERIOD[0], (np.cos(turn) - 1) * PERIOD[0]
     loads = (Load("turn", (along, across, 0.0), (-across, along, 0.0)),)
-    (state,) = run(folder, mesh, loads, name="turn", at_once=True)  # half of the turn would be no turn
+    (state,) = run(
+        folder, mesh, loads, name="turn", at_once=True
+    )  # half of the turn would be no turn
     assert np.abs(state.forces).max() < 1e-4
     law = read_settings(FAMILIES, "plain42").yarn
-    assert cell_energy(mesh, state.displacement, law).strain < 1e-5  # the file gives six digits of the displacement
+    assert (
+        cell_energy(mesh, state.displacement, law).strain < 1e-5
+    )  # the file gives six digits of the displacement
     assert np.abs(state.strain).max() < 1e-6
 
 
@@ -190,8 +204,12 @@ def test_the_work_of_shear_is_the_energy_stored(folder, mesh):
     case = settings.case("shear")
     (path,) = case.paths(settings.contact)
     assert path == (1, 2, 3, 4)
-    states = run(folder, mesh, tuple(case.load(angle, LATTICE) for angle in path), settings, name="shear")
-    couples = [0.0] + [moment(LATTICE.vectors, angle, 0.0, state.forces) for angle, state in zip(path, states)]
+    states = run(
+        folder, mesh, tuple(case.load(angle, LATTICE) for angle in path), settings, name="shear"
+    )
+    couples = [0.0] + [
+        moment(LATTICE.vectors, angle, 0.0, state.forces) for angle, state in zip(path, states)
+    ]
     assert (np.diff(couples) > 0).all()
     stored = cell_energy(mesh, states[-1].displacement, settings.yarn).strain
     stored += contact_energy(folder, "shear", 4)
@@ -214,7 +232,10 @@ def alone(folder, law, strain, **options):
         )
     )
     start = yarn.nodes_of(yarn.yarns[0], SurfaceKind.START)
-    first, last = (int(start[yarn.points[start] @ [0, 1, at] == limit][0]) + 1 for at, limit in corner(yarn, start))
+    first, last = (
+        int(start[yarn.points[start] @ [0, 1, at] == limit][0]) + 1
+        for at, limit in corner(yarn, start)
+    )
     # no warp is there to hold the yarn across, or to keep it from turning about itself
     keywords.insert(-1, Boundary(((first, 2, 0.0), (last, 2, 0.0))))
     write_keywords(keywords, folder / "yarn.inp")
@@ -261,7 +282,9 @@ def test_compaction_resists_with_the_cube_of_the_crush(folder):
     text = BLOCK.split("*MATERIAL")[0] + material + "*SOLID SECTION, ELSET=block, MATERIAL=m\n"
     text += "*NSET, NSET=top\n5, 6, 7, 8\n*BOUNDARY\n" + held + "bottom, 3, 3\n"
     output = "*NODE PRINT, NSET=top, TOTALS=ONLY\nRF\n"
-    (folder / "crush.inp").write_text(text + step(f"*BOUNDARY\ntop, 3, 3, {crush}\n", output=output))
+    (folder / "crush.inp").write_text(
+        text + step(f"*BOUNDARY\ntop, 3, 3, {crush}\n", output=output)
+    )
     job = run_job(folder / "crush.inp", box("weft_1"), solver())
     assert job.run.warnings == ("*WARNING: no degrees of freedom in the model",)
     (total,) = [each for each in read_dat(folder / "crush.dat") if each.quantity == "RF"]
@@ -274,7 +297,10 @@ def test_energy_of_a_stretched_box_is_the_closed_form():
     stretch = np.array([1.02, 0.97, 0.9])
     found = cell_energy(yarn, yarn.points * (stretch - 1), law)
     green = (stretch**2 - 1) / 2
-    density = green @ np.linalg.inv(law.compliance) @ green / 2 + law.hardening / 4 * (stretch.prod() - 1) ** 4
+    density = (
+        green @ np.linalg.inv(law.compliance) @ green / 2
+        + law.hardening / 4 * (stretch.prod() - 1) ** 4
+    )
     assert found.strain == pytest.approx(density * BOX_LENGTH * WIDTH * HEIGHT, rel=1e-12)
     assert found.least_volume_ratio == pytest.approx(stretch.prod())
 
@@ -321,19 +347,30 @@ def test_the_commands_leave_their_files(tmp_path, capsys):
     assert "T11 N per yarn" in said.out and "state 3 of 3" in said.err
     assert main(["shear", "plain_flat", *here, "--across", "4", "-q"]) == 0
     (families / "simulation.toml").write_text("[tension]\nratios = [1]\npoints = 1\ngrid = 0\n")
-    assert main(["tension", "plain", *here, "--across", "4", "-q"]) == 0  # one curve spans no surface
-    assert (out / "plain" / "tension_curves.png").exists() and not (out / "plain" / "tension_surface.png").exists()
+    assert (
+        main(["tension", "plain", *here, "--across", "4", "-q"]) == 0
+    )  # one curve spans no surface
+    assert (out / "plain" / "tension_curves.png").exists() and not (
+        out / "plain" / "tension_surface.png"
+    ).exists()
     folder = out / "plain_flat"
     for case, pictures in (
         ("tension", ("_curves", "_surface", "_normal", "_crushing", "_strain", "_pressure")),
         ("shear", ("_curve", "_normal", "_strain", "_pressure")),
     ):
         report = json.loads((folder / f"{case}.json").read_text())
-        assert set(report["files"]) | {f"{case}.json"} == {file.name for file in folder.glob(f"{case}*")}
-        assert all(sha256((folder / name).read_bytes()).hexdigest() == file for name, file in report["files"].items())
+        assert set(report["files"]) | {f"{case}.json"} == {
+            file.name for file in folder.glob(f"{case}*")
+        }
+        assert all(
+            sha256((folder / name).read_bytes()).hexdigest() == file
+            for name, file in report["files"].items()
+        )
         assert report["options"]["across"] == (6 if case == "tension" else 4)
         assert report["version"] and report["date"] and report["measured"]["name"] == "plain_flat"
-        assert {f"{case}{name}.png" for name in pictures} | {f"{case}.pvd", f"{case}.csv"} <= set(report["files"])
+        assert {f"{case}{name}.png" for name in pictures} | {f"{case}.pvd", f"{case}.csv"} <= set(
+            report["files"]
+        )
         vector = {f"{case}{name}.pdf" for name in pictures if "curve" in name or name == "_surface"}
         assert vector <= set(report["files"])
         assert report["solver"]["finished"] and not report["solver"]["warnings"]
@@ -359,9 +396,13 @@ def test_the_commands_leave_their_files(tmp_path, capsys):
         "k = 1, E11 = 0.4 %, E22 = 0.4 %",
     ]
     for number, ((time, state), row) in enumerate(zip(states, rows, strict=True)):
-        assert time == number and state.field_data["T11_N_per_yarn"][0] == pytest.approx(float(row["T11_N_per_yarn"]))
+        assert time == number and state.field_data["T11_N_per_yarn"][0] == pytest.approx(
+            float(row["T11_N_per_yarn"])
+        )
     rest, pulled = states[0][1], states[-1][1]
-    assert pulled.points - pulled.point_data["displacement"] == pytest.approx(rest.points, abs=1e-12)
+    assert pulled.points - pulled.point_data["displacement"] == pytest.approx(
+        rest.points, abs=1e-12
+    )
     pulls = [2 * last["T11_N_per_yarn"], 2 * last["T22_N_per_yarn"]]
     assert virial(pulled, 1.004 * 2 / 0.22) == pytest.approx(pulls, rel=0.02)
     assert [time for time, _ in series(folder / "shear.pvd")] == [0, 2]
@@ -373,7 +414,9 @@ def test_what_a_stopped_solver_reached_is_kept_aside(tmp_path, capsys):
     before = out / "plain_flat" / "tension.csv"
     before.parent.mkdir(parents=True)
     before.write_text("earlier\n")
-    (before.parent / "tension.json").write_text('{"files": ["tension.csv", "tension_state_9.vtu", "../tension"]}')
+    (before.parent / "tension.json").write_text(
+        '{"files": ["tension.csv", "tension_state_9.vtu", "../tension"]}'
+    )
     more = [before.parent / "tension_state_9.vtu", out / "tension"]
     for file in more:
         file.write_text("earlier\n")
@@ -382,7 +425,9 @@ def test_what_a_stopped_solver_reached_is_kept_aside(tmp_path, capsys):
     said = capsys.readouterr().err
     assert "stopped at the time limit" in said and "of its load" in said
     kept = out / "plain_flat" / "tension_incomplete"
-    assert {"tension.inp", "tension.log", "tension.json", "tension.csv"} <= {file.name for file in kept.iterdir()}
+    assert {"tension.inp", "tension.log", "tension.json", "tension.csv"} <= {
+        file.name for file in kept.iterdir()
+    }
     assert before.read_text() == "earlier\n"
     assert not json.loads((kept / "tension.json").read_text())["solver"]["finished"]
     assert all(file.exists() for file in more)
@@ -392,11 +437,18 @@ def test_what_a_stopped_solver_reached_is_kept_aside(tmp_path, capsys):
 
 def test_a_unit_of_a_study_is_stretched(tmp_path):
     row, _ = find_row(small(tmp_path), "plain_flat")
-    work = Work("tension", {"across": 4, "gap": 2}, 300.0, read_settings(tmp_path / "families", "plain_flat"))
+    work = Work(
+        "tension",
+        {"across": 4, "gap": 2},
+        300.0,
+        read_settings(tmp_path / "families", "plain_flat"),
+    )
     outcome = run_unit(row, work, str(tmp_path / "kept"))
     assert (outcome.status, outcome.reason) == ("done", "")
     figures = outcome.figures
-    assert figures["tension.k=1.T11_N_per_yarn"] == pytest.approx(figures["tension.k=1.T22_N_per_yarn"], rel=0.03)
+    assert figures["tension.k=1.T11_N_per_yarn"] == pytest.approx(
+        figures["tension.k=1.T22_N_per_yarn"], rel=0.03
+    )
     assert figures["consistency.max_penetration_mm"] < 1e-9 < figures["tension.max_penetration_mm"]
     assert figures["mesh.hexahedra"] == 2 * 2 * (4 * 2 * (8 + 2) + 8 * 2 * (4 + 2))
     assert {"tension.csv", "tension.pvd", "report.json"} <= {

@@ -72,7 +72,9 @@ def test_no_solver_says_in_one_line_how_to_get_it(monkeypatch, tmp_path):
         with pytest.raises(SolverError) as caught:
             find_solver(option)
         message = str(caught.value)
-        assert "apt-get install calculix-ccx" in message and "--ccx" in message and "\n" not in message
+        assert (
+            "apt-get install calculix-ccx" in message and "--ccx" in message and "\n" not in message
+        )
         assert isinstance(caught.value, FabricCadError)
     assert str(tmp_path / "ccx") in message
 
@@ -97,7 +99,8 @@ def test_what_cannot_be_run_is_refused(tmp_path):
 
 def test_periods_of_steps():
     text = (
-        "** *STEP\n*STEP, NLGEOM\n* Static, direct\n0.1, 2.5\n*END STEP\n*step\n*STATIC\n*CLOAD\n1, 1, 1.\n*END STEP\n"
+        "** *STEP\n*STEP, NLGEOM\n* Static, direct\n0.1, 2.5\n*END STEP\n"
+        "*step\n*STATIC\n*CLOAD\n1, 1, 1.\n*END STEP\n"
     )
     assert step_periods(text) == (2.5, 1.0)
     assert step_periods(BLOCK) == ()
@@ -131,9 +134,14 @@ with staged(Path({str(tmp_path / "build" / "row")!r})) as folder:
     (folder / "job.inp").write_text("*STEP")
     {prefix}run_solver(folder / "job.inp", Path({str(solver)!r}))
 """
-    python = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stderr=subprocess.PIPE, text=True)
+    python = subprocess.Popen(
+        [sys.executable, "-c", code], cwd=ROOT, stderr=subprocess.PIPE, text=True
+    )
     until = time.monotonic() + 20
-    while not (there := list(tmp_path.glob("build/.fabric-cad-*/new/child"))) and time.monotonic() < until:
+    while (
+        not (there := list(tmp_path.glob("build/.fabric-cad-*/new/child")))
+        and time.monotonic() < until
+    ):
         time.sleep(0.02)
     return python, int(there[0].read_text())
 
@@ -150,14 +158,18 @@ def test_an_interrupt_leaves_no_child(tmp_path):
 def test_a_polite_end_of_the_command_leaves_no_child_and_no_folder(tmp_path, number):
     """The command turns these signals into exceptions."""
     stoppable = "import fabric_cad.support.interrupts as i; s = i.stoppable(); s.__enter__(); "
-    python, child = solving(tmp_path, "sleep 60 & echo $! > started\nmv started child\nwait", stoppable)
+    python, child = solving(
+        tmp_path, "sleep 60 & echo $! > started\nmv started child\nwait", stoppable
+    )
     python.send_signal(number)
     _, errors = python.communicate(timeout=10)
     assert "Stopped" in errors
     assert gone(child) and list((tmp_path / "build").iterdir()) == []
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="the system ends no children with their parents")
+@pytest.mark.skipif(
+    sys.platform != "linux", reason="the system ends no children with their parents"
+)
 def test_a_killed_command_leaves_no_child(tmp_path):
     python, child = solving(tmp_path, WAITS)
     python.kill()
@@ -193,7 +205,9 @@ def test_no_call_is_needed_that_windows_lacks(tmp_path, monkeypatch, how):
     monkeypatch.setitem(sys.modules, "fcntl", None)
     monkeypatch.setattr(process, "_ties", lambda folder: {})
     body = "exec sleep 60" if how == "is stopped" else "exit 3"
-    reason = "stopped at the time limit of 0.3 s" if how == "is stopped" else "ccx ended with status 3"
+    reason = (
+        "stopped at the time limit of 0.3 s" if how == "is stopped" else "ccx ended with status 3"
+    )
     run = run_solver(job(tmp_path, BLOCK), script(tmp_path / "solver", body), time_limit=0.3)
     assert run.reason.startswith(reason)
 
@@ -218,7 +232,9 @@ def test_the_solver_gets_its_deck_its_folder_and_its_threads(tmp_path):
 @needs_ccx
 def test_a_job_that_finishes(tmp_path):
     steps = ((0.02, "0.5, 1."), (0.04, "1., 4."))
-    deck = job(tmp_path, BLOCK + "".join(step(pulled(u), static, direct=True) for u, static in steps))
+    deck = job(
+        tmp_path, BLOCK + "".join(step(pulled(u), static, direct=True) for u, static in steps)
+    )
     for suffix in ("frd", "sta"):
         (tmp_path / f"job.{suffix}").write_text("of an earlier run")
     heard = []
@@ -226,7 +242,9 @@ def test_a_job_that_finishes(tmp_path):
     assert run.finished and run.reason == "finished" and run.warnings == () and run.cutbacks == 0
     assert run.version.startswith("2.")
     assert 1e6 < run.peak_memory < 200e6
-    assert [(at.step, at.increment) for at in run.increments] == [(at.step, at.increment) for at in heard]
+    assert [(at.step, at.increment) for at in run.increments] == [
+        (at.step, at.increment) for at in heard
+    ]
     assert [at.load for at in heard] == pytest.approx([0.5, 1, 0.25, 0.5, 0.75, 1])
     assert [at.total_time for at in heard] == pytest.approx([0.5, 1, 2, 3, 4, 5])
     assert {at.steps for at in heard} == {2}
@@ -239,7 +257,11 @@ def test_a_job_that_finishes(tmp_path):
     [
         ("left, 1, 1\n", "nowhere, 1, 1\n", "node set NOWHERE has not yet been defined"),
         (f"*ELASTIC\n{1000.0}, 0.3", "*ELASTIC\n1000.", "not enough constants"),
-        ("1, 1, 2, 3, 4, 5, 6, 7, 8", "1, 5, 6, 7, 8, 1, 2, 3, 4", "nonpositive jacobian determinant in element 1"),
+        (
+            "1, 1, 2, 3, 4, 5, 6, 7, 8",
+            "1, 5, 6, 7, 8, 1, 2, 3, 4",
+            "nonpositive jacobian determinant in element 1",
+        ),
     ],
 )
 def test_a_broken_deck_gives_the_words_of_ccx(tmp_path, old, new, said):
@@ -277,7 +299,9 @@ def test_a_job_that_cannot_converge_names_the_step_and_the_load(tmp_path):
     assert run.cutbacks >= 1
     states, printed = read_frd(tmp_path / "job.frd"), read_dat(tmp_path / "job.dat")
     reached = [(at.step, at.increment) for at in run.increments]
-    assert [(state.step, state.increment) for state in states] == reached  # without the last, diverged iterate
+    assert [
+        (state.step, state.increment) for state in states
+    ] == reached  # without the last, diverged iterate
     forces = [p.values[0] for p in printed if p.quantity == "RF"]
     assert len(forces) == len(reached)
     load = float(told[1]) / 100
@@ -288,7 +312,10 @@ def test_a_job_that_cannot_converge_names_the_step_and_the_load(tmp_path):
 def test_too_few_increments_are_told_with_the_place(tmp_path):
     text = BLOCK + step(pulled(0.02), "0.25, 1.", direct=True).replace("INC=1000000", "INC=2")
     run = run_solver(job(tmp_path, text), find_solver(None))
-    assert not run.finished and "max. # of increments reached, in step 1 at 50 % of its load" in run.reason
+    assert (
+        not run.finished
+        and "max. # of increments reached, in step 1 at 50 % of its load" in run.reason
+    )
 
 
 @needs_ccx
@@ -315,7 +342,9 @@ def test_jobs_run_side_by_side(tmp_path):
     strains = (0.001, 0.002, 0.003, 0.004)
     decks = [job(tmp_path / f"at_{e}", BLOCK + step(pulled(2 * e))) for e in strains]
     with ThreadPoolExecutor(4) as pool:
-        runs = list(pool.map(lambda deck: run_solver(deck, find_solver(None), time_limit=60), decks))
+        runs = list(
+            pool.map(lambda deck: run_solver(deck, find_solver(None), time_limit=60), decks)
+        )
     assert all(run.finished for run in runs)
     for strain, deck in zip(strains, decks):
         force = read_dat(deck.with_suffix(".dat"))[0].values[0]

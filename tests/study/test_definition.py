@@ -52,7 +52,9 @@ float_gap = ["symmetric", "flat"]
     assert found.factors["fabric_thickness_mm"] == Values((0.7, 0.8))
     assert found.factors["section"] == Values(("lenticular", "round"))
     assert found.factors["float_gap"] == Values(("symmetric", "flat"))
-    percent = found.factors["weft_crimp_percent"]  # as wide as has the row's standard deviation 0.04 %
+    percent = found.factors[
+        "weft_crimp_percent"
+    ]  # as wide as has the row's standard deviation 0.04 %
     assert (percent.low + percent.high) / 2 == pytest.approx(0.4)
     assert (percent.high - percent.low) / 12**0.5 == pytest.approx(0.04)
     assert (found.name, found.work.depth, found.keep) == ("study", "identify", False)
@@ -149,11 +151,16 @@ def test_one_wrong_thing(here, text, words):
 
 
 def test_the_command_reports_and_exits_with_2(here, capsys):
-    Path("families/plain.csv").write_text("name,weft_density_per_mm,weft_width_mm,weft_crimp\nplain,0.22,9,0.004\n")
+    Path("families/plain.csv").write_text(
+        "name,weft_density_per_mm,weft_width_mm,weft_crimp\nplain,0.22,9,0.004\n"
+    )
     Path("a.toml").write_text("base = 'plain'\ndesign = 'grid'\n[factors]\nweft_crimp = [0.004]\n")
     assert main(["study", "a.toml"]) == 2
     told = capsys.readouterr().err
-    assert told == "families/plain.csv:2: weft_width_mm: 9 is not below the weft spacing 4.545 mm (row plain)\n"
+    assert (
+        told
+        == "families/plain.csv:2: weft_width_mm: 9 is not below the weft spacing 4.545 mm (row plain)\n"
+    )
     assert main(["study", "none.toml"]) == 2
     assert capsys.readouterr().err == "none.toml: cannot be read: No such file or directory\n"
     assert not Path("build").exists()

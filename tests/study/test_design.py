@@ -26,7 +26,13 @@ def test_a_grid_holds_every_combination_once():
 def test_one_at_a_time_changes_one_factor_at_a_time():
     found = drawn("one-at-a-time", a=Normal(1.0, 0.1), b=Values((4.0, 5.0, 6.0)))
     rows = list(zip(found.labels["changed"], found.values["a"], found.values["b"]))
-    assert rows == [("", 1.0, 5.0), ("a", 0.9, 5.0), ("a", 1.1, 5.0), ("b", 1.0, 4.0), ("b", 1.0, 6.0)]
+    assert rows == [
+        ("", 1.0, 5.0),
+        ("a", 0.9, 5.0),
+        ("a", 1.1, 5.0),
+        ("b", 1.0, 4.0),
+        ("b", 1.0, 6.0),
+    ]
 
 
 @settings(deadline=None)
@@ -53,7 +59,9 @@ def test_saltellis_matrices_mix_a_column_of_b_into_a(power, seed):
 
 def test_the_same_seed_gives_the_same_samples():
     for design in ("latin-hypercube", "sobol"):
-        one, two, three = (drawn(design, 8, seed, a=Uniform(0.0, 1.0)).values["a"] for seed in (1, 1, 2))
+        one, two, three = (
+            drawn(design, 8, seed, a=Uniform(0.0, 1.0)).values["a"] for seed in (1, 1, 2)
+        )
         np.testing.assert_array_equal(one, two)
         assert not np.array_equal(one, three)
 

@@ -25,11 +25,15 @@ def test_a_dead_or_hanging_worker_costs_its_own_unit(tmp_path):
     assert type(found["dies"]) is type(found["hangs"]) is ChildProcessError
     assert type(found["raises"]) is MemoryError and str(found["raises"]) == "too large"
     attempts = {name: len((tmp_path / name).read_text()) for name in names}
-    assert attempts == dict.fromkeys(names, 1) | dict.fromkeys(("dies", "hangs", "raises", "stumbles"), 2)
+    assert attempts == dict.fromkeys(names, 1) | dict.fromkeys(
+        ("dies", "hangs", "raises", "stumbles"), 2
+    )
 
 
 def test_no_scheduler_is_one_line():
-    with pytest.raises(InputError, match="^--scheduler tcp://127.0.0.1:9: no scheduler answers there$"):
+    with pytest.raises(
+        InputError, match="^--scheduler tcp://127.0.0.1:9: no scheduler answers there$"
+    ):
         list(run_tasks([("a", ())], print, scheduler="tcp://127.0.0.1:9"))
 
 
@@ -61,7 +65,9 @@ def holding(tmp_path):
     script = tmp_path / "hold.py"
     script.write_text(HOLD)
     places = {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[1]), *sys.path])}
-    study = subprocess.Popen([sys.executable, script, tmp_path], env=os.environ | places, start_new_session=True)
+    study = subprocess.Popen(
+        [sys.executable, script, tmp_path], env=os.environ | places, start_new_session=True
+    )
     noted = [tmp_path / f"unit_{number}" for number in range(2)]
     end = time.monotonic() + 60
     while not all(note.exists() and note.read_text() for note in noted):
@@ -85,7 +91,9 @@ def test_nobody_can_connect_to_a_running_study(holding):
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a worker first leaves its C code")
 def test_a_killed_study_leaves_no_worker_behind(holding):
     study, workers = holding
-    left = [process for process in processes_of(psutil.Process(study.pid)) if process.pid != study.pid]
+    left = [
+        process for process in processes_of(psutil.Process(study.pid)) if process.pid != study.pid
+    ]
     os.kill(study.pid, signal.SIGKILL)
     study.wait()
     _, alive = psutil.wait_procs(left, timeout=10)
@@ -93,6 +101,8 @@ def test_a_killed_study_leaves_no_worker_behind(holding):
 
 
 def test_tls_without_certificates_is_one_line():
-    told = "^--scheduler tls://127.0.0.1:9: no certificates for TLS; Dask's configuration names them "
+    told = (
+        "^--scheduler tls://127.0.0.1:9: no certificates for TLS; Dask's configuration names them "
+    )
     with pytest.raises(InputError, match=told):
         list(run_tasks([("a", ())], print, scheduler="tls://127.0.0.1:9"))

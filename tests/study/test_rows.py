@@ -42,14 +42,20 @@ def test_a_unit_is_the_base_row_with_its_factors():
     assert identify(rows)["base_1"] == identify(one)["base_1"]
     assert not rows.scattered.any()
     assert base_value(base, "weft_crimp_percent") == pytest.approx(0.4)
-    assert base_value(base, "section") == "lenticular" and base_value(base, "float_gap") == "symmetric"
+    assert (
+        base_value(base, "section") == "lenticular" and base_value(base, "float_gap") == "symmetric"
+    )
 
 
 def test_columns_of_texts_may_vary():
     rows, refused = sampled(
         table("twill", TWILL), float_gap=["flat", "symmetric"], section=["lenticular", "lenticular"]
     )
-    assert not refused and rows.float_gaps == ("flat", "symmetric") and rows.sections == ("lenticular", "lenticular")
+    assert (
+        not refused
+        and rows.float_gaps == ("flat", "symmetric")
+        and rows.sections == ("lenticular", "lenticular")
+    )
     flat, symmetric = (identify(rows)[name] for name in rows.names)
     assert (flat.float_gap, symmetric.float_gap) == ("flat", "symmetric")
     assert replace(flat, name="", float_gap="") == replace(symmetric, name="", float_gap="")
@@ -60,7 +66,9 @@ def test_columns_of_texts_may_vary():
 def test_weave_columns_may_vary():
     rows, refused = sampled(table("twill", TWILL), over=[1, 3, 3, 200], under=[1, 1, 2, 1])
     assert [(each.over, each.under) for each in rows.weaves[:3]] == [(1, 1), (3, 1), (3, 2)]
-    assert {at: str(each.message) for at, each in refused.items()} == {3: "200 is not between 1 and 100"}
+    assert {at: str(each.message) for at, each in refused.items()} == {
+        3: "200 is not between 1 and 100"
+    }
     satin = table("satin", PLAIN | {"harness": 5, "step": 2})
     _, refused = sampled(satin, harness=[5, 6, 8], step=[3, 2, 9])
     assert {at: each.message for at, each in refused.items()} == {
@@ -72,7 +80,13 @@ def test_weave_columns_may_vary():
     assert rows.weaves[0].pattern == ("1100", "0011") and list(refused) == [1]
 
 
-_COLUMNS = ("weft_density_per_mm", "weft_width_mm", "weft_crimp", "weft_contact_top_mm", "weft_offset_bottom_mm")
+_COLUMNS = (
+    "weft_density_per_mm",
+    "weft_width_mm",
+    "weft_crimp",
+    "weft_contact_top_mm",
+    "weft_offset_bottom_mm",
+)
 
 
 @settings(deadline=None, max_examples=200)
@@ -86,7 +100,9 @@ def test_a_row_is_refused_as_the_reader_would(values, section):
     lateral = {"lateral_height_mm": 0.01} if section == "flat" else {}
     row = PLAIN | values | lateral | {"section": section}
     base = table("plain", PLAIN | lateral | ({"section": "flat"} if lateral else {}))
-    rows, refused = sampled(base, **{name: [each] for name, each in values.items()}, section=[section])
+    rows, refused = sampled(
+        base, **{name: [each] for name, each in values.items()}, section=[section]
+    )
     try:
         table("plain", row)
         told = []
@@ -97,7 +113,9 @@ def test_a_row_is_refused_as_the_reader_would(values, section):
 
 
 def test_bad_rows_are_refused_and_the_others_solved_alone():
-    rows, refused = sampled(table("plain", PLAIN), weft_crimp=[0.004, 5.0, 1e-3], weft_width_mm=[3.2, 3.2, 4.54])
+    rows, refused = sampled(
+        table("plain", PLAIN), weft_crimp=[0.004, 5.0, 1e-3], weft_width_mm=[3.2, 3.2, 4.54]
+    )
     assert not refused and not out_of_bounds(rows)
     wide = replace(rows, measured=rows.measured | {"weft_thickness_mm": np.full(3, np.nan)})
     bad = replace(wide, measured=wide.measured | {"weft_crimp": np.array([0.004, np.nan, 1e-3])})
@@ -105,13 +123,19 @@ def test_bad_rows_are_refused_and_the_others_solved_alone():
     assert found.rows.tolist() == [0, 2] and list(found.refused) == [1]
     for at, row in enumerate(found.rows.tolist()):
         alone = identify(bad.take([row]))
-        assert {name: values[at] for name, values in found.columns.items()} == alone.row(bad.names[row])
+        assert {name: values[at] for name, values in found.columns.items()} == alone.row(
+            bad.names[row]
+        )
 
 
 @pytest.mark.parametrize("float_gap", FLOAT_GAPS)
 @pytest.mark.parametrize("seed", range(40))
 def test_volumes_are_integrals_of_the_sections(seed, float_gap):
-    draw, form = (random_row, {}) if seed % 2 else (random_general_row, {"form": ("lenticular", "flat")[seed % 4 // 2]})
+    draw, form = (
+        (random_row, {})
+        if seed % 2
+        else (random_general_row, {"form": ("lenticular", "flat")[seed % 4 // 2]})
+    )
     family, row = draw(np.random.default_rng(seed), **form)
     row["float_gap"] = float_gap
     measured = table(family, row)
@@ -141,14 +165,18 @@ def volume_of(surface):
     nodes, weights = np.polynomial.legendre.leggauss(6)
     volume = 0.0
     for patch in surface.patches:
-        sign = {"top": 1, "bottom": -1}.get(patch.side) or (1 if patch.side.endswith("upper") else -1)
+        sign = {"top": 1, "bottom": -1}.get(patch.side) or (
+            1 if patch.side.endswith("upper") else -1
+        )
         if patch.side in ("left", "right"):
             continue  # upright
         (ku, _), (kv, _) = patch.along, patch.across
         for u0, u1 in zip(np.unique(ku), np.unique(ku)[1:]):
             for v0, v1 in zip(np.unique(kv), np.unique(kv)[1:]):
                 u, v = (u0 + u1 + (u1 - u0) * nodes) / 2, (v0 + v1 + (v1 - v0) * nodes) / 2
-                points, along, across = (rates_of(patch, u, v, *orders) for orders in ((0, 0), (1, 0), (0, 1)))
+                points, along, across = (
+                    rates_of(patch, u, v, *orders) for orders in ((0, 0), (1, 0), (0, 1))
+                )
                 plan = along[..., 0] * across[..., 1] - along[..., 1] * across[..., 0]
                 scale = (u1 - u0) * (v1 - v0) / 4
                 volume += sign * scale * float(weights @ (points[..., 2] * plan) @ weights)
@@ -156,13 +184,23 @@ def volume_of(surface):
 
 
 def test_the_quadrature_of_this_test_knows_a_closed_form():
-    assert quad(lambda v: 0.18 * (1 - (v / 1.6) ** 2), -1.6, 1.6)[0] == pytest.approx(0.18 * 3.2 * 2 / 3)
+    assert quad(lambda v: 0.18 * (1 - (v / 1.6) ** 2), -1.6, 1.6)[0] == pytest.approx(
+        0.18 * 3.2 * 2 / 3
+    )
 
 
 @pytest.mark.parametrize(
     ("family", "row"),
     [
-        ("plain", PLAIN | {"weft_thickness_mm": 0.37, "weft_linear_density_tex": 1870, "fibre_density_g_cm3": 2.5}),
+        (
+            "plain",
+            PLAIN
+            | {
+                "weft_thickness_mm": 0.37,
+                "weft_linear_density_tex": 1870,
+                "fibre_density_g_cm3": 2.5,
+            },
+        ),
         ("pattern", PLAIN | {"pattern": "ou/uo"}),
         (
             "plain",
@@ -184,6 +222,8 @@ def test_identified_figures_are_those_of_the_report(family, row, tmp_path):
 
 def test_designs_take_units_from_the_base_row():
     base = table("twill", TWILL)
-    samples = DESIGNS["one-at-a-time"]({"over": Values((1, 2, 3))}, {"over": base_value(base, "over")}, 0, 0)
+    samples = DESIGNS["one-at-a-time"](
+        {"over": Values((1, 2, 3))}, {"over": base_value(base, "over")}, 0, 0
+    )
     rows, refused = study_rows(base, samples)
     assert [each.over for each in rows.weaves] == [2, 1, 3] and not refused

@@ -57,7 +57,9 @@ def study(text, name="study.toml"):
 
 
 def lines(name="study"):
-    return sum(path.read_bytes().count(b"\n") for path in Path("build", name, "units").glob("*.jsonl"))
+    return sum(
+        path.read_bytes().count(b"\n") for path in Path("build", name, "units").glob("*.jsonl")
+    )
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +67,9 @@ def cluster():
     """A scheduler and two workers on the loopback, as someone else would have started them."""
     from distributed import LocalCluster
 
-    with LocalCluster(n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as found:
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+    ) as found:
         yield found
 
 
@@ -81,14 +85,18 @@ def test_an_identify_study_keeps_refused_fabrics_and_finds_what_matters(here, ca
     fraction = found["volumes.yarn_volume_fraction"]
     np.testing.assert_array_equal(np.isnan(fraction), refused)
     text = Path("build/study/table.csv").read_text().splitlines()
-    assert len(text) == 64 * 5 + 1 and float(text[1].split(",")[3]) == found["weft_density_per_mm"][0]
+    assert (
+        len(text) == 64 * 5 + 1 and float(text[1].split(",")[3]) == found["weft_density_per_mm"][0]
+    )
     sensitivity = Path("build/study/sensitivity.csv").read_text()
     assert "volumes.yarn_volume_fraction,weft_width_mm," in sensitivity
     assert Path("build/study/sensitivity.png").stat().st_size > 10_000
 
 
 def test_a_study_of_no_fabric_at_all_says_why(here, capsys):
-    Path("none.toml").write_text('base = "plain"\ndesign = "grid"\n[factors]\nweft_width_mm = [5, 6]\n')
+    Path("none.toml").write_text(
+        'base = "plain"\ndesign = "grid"\n[factors]\nweft_width_mm = [5, 6]\n'
+    )
     assert main(["study", "none.toml"]) == 0
     assert "none: 2 units: 0 done, 2 refused, 0 failed" in capsys.readouterr().out
     table = read_table("build/none")
@@ -109,9 +117,17 @@ def test_a_finished_identify_study_is_left_alone(here):
 @pytest.mark.parametrize(
     ("depth", "figure", "told"),
     [
-        ("cell", "volumes.yarn", "'volumes.yarn' is no figure of depth cell; did you mean volumes.yarn_mm3?"),
+        (
+            "cell",
+            "volumes.yarn",
+            "'volumes.yarn' is no figure of depth cell; did you mean volumes.yarn_mm3?",
+        ),
         ("mesh", "bogus", "'bogus' is no figure of depth mesh; there are "),
-        ("cell", "mesh.nodes", "'mesh.nodes' is a figure of depth mesh, this study is of depth cell"),
+        (
+            "cell",
+            "mesh.nodes",
+            "'mesh.nodes' is a figure of depth mesh, this study is of depth cell",
+        ),
         ("identify", "tension.k=1.E11", "'tension.k=1.E11' is a figure of depth tension, "),
         (
             "tension",
@@ -119,8 +135,16 @@ def test_a_finished_identify_study_is_left_alone(here):
             "'tension.k=3.E11' is no figure of depth tension; did you mean tension.k=",
         ),
         ("cell", "section", "'section' is no figure of depth cell"),
-        ("cell", "stiffness.Ex", "'stiffness.Ex' is a figure of depth stiffness, this study is of depth cell"),
-        ("stiffness", "mesh.nodes", "'mesh.nodes' is a figure of depth mesh, this study is of depth stiffness"),
+        (
+            "cell",
+            "stiffness.Ex",
+            "'stiffness.Ex' is a figure of depth stiffness, this study is of depth cell",
+        ),
+        (
+            "stiffness",
+            "mesh.nodes",
+            "'mesh.nodes' is a figure of depth mesh, this study is of depth stiffness",
+        ),
     ],
 )
 def test_a_figure_that_is_none_is_refused_before_any_unit_runs(here, capsys, depth, figure, told):
@@ -142,7 +166,9 @@ def test_every_figure_of_an_identify_study_is_known_by_name(here):
     for name in ("plain_measured", "twill22_measured", "satin5", "basket22"):
         row = find_row("families", name)[0]
         figures = identified_figures(row, identify_rows(row))
-        numbers = {figure for figure, values in figures.items() if np.array(values).dtype.kind in "if"}
+        numbers = {
+            figure for figure, values in figures.items() if np.array(values).dtype.kind in "if"
+        }
         assert numbers <= set(figure_names("identify"))
 
 
@@ -150,13 +176,24 @@ def test_a_constant_figure_is_said_to_be_one_and_has_no_row(here, capsys):
     figures = "figures = ['identified.weft.spacing_mm', 'identified.weft.thickness_mm']\n"
     text = "base = 'plain_unbalanced'\ndesign = '{}'\n{}" + figures
     text += "factors = {{ weft_crimp = {{ from = 0.003, to = 0.004, steps = 5 }} }}\n"
-    for design, more in (("sobol", "samples = 8\n"), ("grid", ""), ("latin-hypercube", "samples = 9\n")):
+    for design, more in (
+        ("sobol", "samples = 8\n"),
+        ("grid", ""),
+        ("latin-hypercube", "samples = 9\n"),
+    ):
         Path("study.toml").write_text(text.format(design, more))
         assert main(["study", "study.toml"]) == 0
         told = capsys.readouterr().err
-        assert "note: identified.weft.spacing_mm has no sensitivities: it is " in told and told.count("note") == 1
+        assert (
+            "note: identified.weft.spacing_mm has no sensitivities: it is " in told
+            and told.count("note") == 1
+        )
         content = Path("build/study/sensitivity.csv").read_text()
-        assert "nan" not in content and "spacing" not in content and "identified.weft.thickness_mm," in content
+        assert (
+            "nan" not in content
+            and "spacing" not in content
+            and "identified.weft.thickness_mm," in content
+        )
 
 
 def test_no_sensitivities_of_an_earlier_study_stay(here):
@@ -175,7 +212,11 @@ def test_the_answer_is_printed_the_factor_that_matters_most_first(here, capsys):
         said = capsys.readouterr().out.splitlines()
         at = said.index("identified.fabric_thickness_mm depends on")
         printed = [line.split()[:2] for line in said[at + 1 : at + 4]]
-        rows = [row for row in read_sensitivities("build/study") if row["figure"] == "identified.fabric_thickness_mm"]
+        rows = [
+            row
+            for row in read_sensitivities("build/study")
+            if row["figure"] == "identified.fabric_thickness_mm"
+        ]
         ranked = sorted(rows, key=lambda row: -abs(row["total"]))
         assert printed == [[row["factor"], f"{row['total']:.2f}"] for row in ranked]
     refused = [line for line in said if " refused, such as: " in line]
@@ -205,9 +246,9 @@ def test_a_mesh_study_on_a_cluster(here, cluster):
     assert (found["mesh.hexahedra"] == report["mesh"]["hexahedra"]).all()
     assert (found["mesh.min_scaled_jacobian"] > 0.2).all()
     numbers = {name for name in found if "." in name and found[name].dtype.kind in "if"}
-    assert {name for name in numbers if name.startswith(("mesh.", "consistency."))} and numbers <= set(
-        figure_names("mesh")
-    )
+    assert {
+        name for name in numbers if name.startswith(("mesh.", "consistency."))
+    } and numbers <= set(figure_names("mesh"))
     assert (found["consistency.max_penetration_mm"] < 1e-12).all()
     with open("build/study/costs.csv", newline="") as file:
         costs = list(csv.DictReader(file))
@@ -217,10 +258,18 @@ def test_a_mesh_study_on_a_cluster(here, cluster):
     table = Path("build/study/table.parquet").read_bytes()
 
     again = run_study(study(cells()), scheduler=address)  # nothing is run again
-    assert (again.before, lines()) == (3, 3) and Path("build/study/table.parquet").read_bytes() == table
+    assert (again.before, lines()) == (3, 3) and Path(
+        "build/study/table.parquet"
+    ).read_bytes() == table
     wider = run_study(study(cells(widths=(2.8, 3.6, 4.4, 5.2, 6.0))), scheduler=address)
     assert (wider.done, wider.refused, wider.before) == (3, 2, 5)
-    assert read_table("build/study")["status"].tolist() == ["done", "done", "done", "refused", "refused"]
+    assert read_table("build/study")["status"].tolist() == [
+        "done",
+        "done",
+        "done",
+        "refused",
+        "refused",
+    ]
     assert lines() == 3
 
 
@@ -237,14 +286,18 @@ def test_a_stiffness_study_homogenises_every_fabric_and_knows_its_constituents(h
 
     constituents, before = Path("families/composite.toml"), study(text)
     constituents.write_text(constituents.read_text().replace("E_MPa = 3500.0", "E_MPa = 4500.0"))
-    assert unit_key(before.base, before.work, False) != unit_key(before.base, study(text).work, False)
+    assert unit_key(before.base, before.work, False) != unit_key(
+        before.base, study(text).work, False
+    )
 
 
 @needs_ccx
 def test_a_tension_study_has_the_figures_that_are_known_by_name(here):
     settings = Path("families/simulation.toml")
     few = (
-        settings.read_text().replace("ratios = [0, 0.5, 1, 2, inf]", "ratios = [1]").replace("points = 4", "points = 1")
+        settings.read_text()
+        .replace("ratios = [0, 0.5, 1, 2, inf]", "ratios = [1]")
+        .replace("points = 4", "points = 1")
     )
     settings.write_text(few.replace("grid = 5", "grid = 0"))
     more = "mesh = { across = 4, crossing = 4, gap = 2 }\nfigures = ['tension.k=1.T11_N_per_yarn']"
@@ -259,8 +312,15 @@ def test_a_tension_study_has_the_figures_that_are_known_by_name(here):
 
 def test_kept_files_are_in_a_folder_of_the_unit(here, cluster):
     run_study(study(cells("cell", "keep = true", (2.8, 4.4))), scheduler=cluster.scheduler_address)
-    kept = sorted(path.relative_to("build/study/cells").as_posix() for path in Path("build/study/cells").glob("*/*"))
-    assert kept == [f"plain_{k}/{name}" for k in (0, 1) for name in (f"plain_{k}.step", "report.json", "solved.csv")]
+    kept = sorted(
+        path.relative_to("build/study/cells").as_posix()
+        for path in Path("build/study/cells").glob("*/*")
+    )
+    assert kept == [
+        f"plain_{k}/{name}"
+        for k in (0, 1)
+        for name in (f"plain_{k}.step", "report.json", "solved.csv")
+    ]
     report = json.loads(Path("build/study/cells/plain_1/report.json").read_text())
     assert report["identified"]["weft"]["width_mm"] == 4.4 and "mesh" not in report
 
@@ -272,9 +332,14 @@ def test_a_unit_that_failed_is_tried_again_and_one_that_is_done_is_not(here):
     )  # CadQuery takes longer to load
     assert (one.done, one.failed, one.before) == (0, 2, 0)
     reason = "twice its worker died or took longer than limit_seconds = 0.05"
-    assert one.reasons == (("failed", reason),) * 2 and read_table("build/study")["reason"].tolist() == [reason] * 2
+    assert (
+        one.reasons == (("failed", reason),) * 2
+        and read_table("build/study")["reason"].tolist() == [reason] * 2
+    )
 
-    two = run_study(study(cells("cell", "limit_seconds = 300", (2.8, 3.6))), workers=2, listen=told.append)
+    two = run_study(
+        study(cells("cell", "limit_seconds = 300", (2.8, 3.6))), workers=2, listen=told.append
+    )
     assert (two.done, two.failed, two.before) == (2, 0, 0)
     assert (told[0].finished, told[-1].finished, told[-1].units) == (0, 2, 2)
     three = run_study(study(cells("cell", "limit_seconds = 0.05", (2.8, 3.6))), workers=2)
@@ -289,7 +354,10 @@ def test_another_run_of_the_same_study_is_told_so(here, capsys):
             run_study(read_study("study.toml"))
     told = capsys.readouterr().err
     holder = f"process {os.getpid()} on {socket.gethostname()}"
-    assert told == f"build/study: another run of this study is under way ({holder}); its table will be here\n"
+    assert (
+        told
+        == f"build/study: another run of this study is under way ({holder}); its table will be here\n"
+    )
     assert main(["study", "study.toml", "-q"]) == 0
 
 
@@ -338,7 +406,9 @@ def test_three_kills_leave_the_same_table(here):
     path.write_bytes(whole[: len(whole) - 40])  # and one line is torn
     assert start().wait(timeout=120) == 0
     assert lines() == 10
-    disturbed = {name: Path("build/study", name).read_bytes() for name in ("table.parquet", "table.csv")}
+    disturbed = {
+        name: Path("build/study", name).read_bytes() for name in ("table.parquet", "table.csv")
+    }
     process = start("--out", "undisturbed")
     assert process.wait(timeout=120) == 0
     for name, content in disturbed.items():
@@ -353,7 +423,9 @@ def test_ctrl_c_leaves_a_study_that_goes_on(here):
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     out, told = process.communicate(timeout=60)
     assert process.returncode == 1 and out == ""
-    assert told.splitlines()[-1].endswith("of 12 units are finished, the same command goes on from there")
+    assert told.splitlines()[-1].endswith(
+        "of 12 units are finished, the same command goes on from there"
+    )
     assert "Traceback" not in told
     assert 1 <= lines() < 12 and not Path("build/study/table.csv").exists()
 

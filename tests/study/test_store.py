@@ -9,7 +9,9 @@ from fabric_cad.study.store import Store
 from fabric_cad.study.units import Outcome
 from fabric_cad.support.errors import OutputError
 
-DONE = Outcome("done", "", {"a.b": 0.1, "text": "weft", "none": None, "odd": float("inf")}, {"total": 1.25})
+DONE = Outcome(
+    "done", "", {"a.b": 0.1, "text": "weft", "none": None, "odd": float("inf")}, {"total": 1.25}
+)
 LINE = written_line("k1", DONE).encode()
 
 
@@ -31,7 +33,9 @@ def test_a_line_is_read_as_it_was_written():
         LINE[:-40],
         LINE.replace(b"1.25", b"1.35"),
         LINE.replace(b"k1", b"k2"),
-        json.dumps({"key": "k1", "status": "done", "reason": "", "figures": {}, "costs": {}}).encode(),
+        json.dumps(
+            {"key": "k1", "status": "done", "reason": "", "figures": {}, "costs": {}}
+        ).encode(),
         json.dumps({"sha256": None, "unit": None}).encode(),
     ],
 )

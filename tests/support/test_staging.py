@@ -23,7 +23,9 @@ posix = pytest.mark.skipif(os.name != "posix", reason="POSIX signals and links")
 
 
 def content(folder):
-    return {str(p.relative_to(folder)): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()}
+    return {
+        str(p.relative_to(folder)): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()
+    }
 
 
 def names(folder):
@@ -46,13 +48,18 @@ def write_result(target, word, files=4):
     with staging.staged(target) as aside:
         for number in range(files):
             (aside / f"{number}.txt").write_text(f"{word} {number}" * 1000)
-        digests = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in aside.iterdir()}
+        digests = {
+            path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in aside.iterdir()
+        }
         (aside / "report.json").write_text(json.dumps({"files": digests}))
 
 
 def is_complete(folder):
     files = json.loads((folder / "report.json").read_text())["files"]
-    return all(hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest for name, digest in files.items())
+    return all(
+        hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest
+        for name, digest in files.items()
+    )
 
 
 def run(code, **options):
@@ -72,7 +79,9 @@ def test_everything_else_in_the_folder_stays(row):
     inode = (row / "my notes.txt").stat().st_ino
     write_result(row, "second")
     assert is_complete(row) and (row / "0.txt").read_text().startswith("second")
-    assert (row / "my notes.txt").stat().st_ino == inode and (row / "tension" / "tension.csv").read_text() == "k"
+    assert (row / "my notes.txt").stat().st_ino == inode and (
+        row / "tension" / "tension.csv"
+    ).read_text() == "k"
     assert names(row.parent) == ["row"]
 
 
@@ -100,7 +109,16 @@ def test_a_folder_replaces_its_like_as_a_whole(row):
 
 def test_a_seal_sees_the_whole_folder_and_may_remove(row):
     def seal(folder):
-        assert names(folder) == ["0.txt", "1.txt", "2.txt", "3.txt", "my notes.txt", "new", "report.json", "tension"]
+        assert names(folder) == [
+            "0.txt",
+            "1.txt",
+            "2.txt",
+            "3.txt",
+            "my notes.txt",
+            "new",
+            "report.json",
+            "tension",
+        ]
         (folder / "3.txt").unlink()
 
     with staging.staged(row, seal) as aside:
@@ -120,7 +138,9 @@ def test_a_reader_sees_one_complete_result_at_any_moment(row):
                 report = os.open("report.json", os.O_RDONLY, dir_fd=folder)
                 opened = {name: os.open(name, os.O_RDONLY, dir_fd=folder) for name in files}
             except FileNotFoundError:
-                seen.append(os.fstat(folder).st_ino != row.stat().st_ino)  # it has just been replaced
+                seen.append(
+                    os.fstat(folder).st_ino != row.stat().st_ino
+                )  # it has just been replaced
                 continue
             finally:
                 os.close(folder)
@@ -254,7 +274,11 @@ def test_locks_of_windows(row, monkeypatch):
     monkeypatch.setitem(sys.modules, "msvcrt", types.SimpleNamespace(locking=locking, LK_NBLCK=2))
     with working.working_folder(row.parent, "row") as folder:
         other = locks.open_lock(folder / "lock")
-        assert held and not locks.take(other) and locks.holder(other).startswith(f"process {os.getpid()} on ")
+        assert (
+            held
+            and not locks.take(other)
+            and locks.holder(other).startswith(f"process {os.getpid()} on ")
+        )
         os.close(other)
     held.clear()
     write_result(row, "second")
@@ -268,7 +292,9 @@ def test_a_second_run_of_a_row_waits_and_says_so(row):
     second = run(code, stderr=subprocess.PIPE)
     try:
         said = second.stderr.readline()
-        assert said.startswith(f"{row}: another run is at work on it (process ") and "waiting" in said
+        assert (
+            said.startswith(f"{row}: another run is at work on it (process ") and "waiting" in said
+        )
         assert (row / "0.txt").read_text().startswith("first")
     finally:
         process.kill()
@@ -310,7 +336,11 @@ def test_nothing_is_written_through_links_out_of_the_folder(tmp_path, row):
 
 def test_files_one_by_one_end_with_the_one_that_says_they_are_complete(row, monkeypatch):
     inode, moved, replace = row.stat().st_ino, [], os.replace
-    monkeypatch.setattr(os, "replace", lambda source, place: (moved.append(Path(place).name), replace(source, place)))
+    monkeypatch.setattr(
+        os,
+        "replace",
+        lambda source, place: (moved.append(Path(place).name), replace(source, place)),
+    )
     with staging.staged(row, last="1.txt") as aside:
         for number in range(3):
             (aside / f"{number}.txt").write_text("new")
@@ -334,7 +364,11 @@ def test_what_is_said_to_who_stops_a_run_is_true(row, monkeypatch):
         with pytest.raises(KeyboardInterrupt):
             write_result(row, "second")
         assert staging.standing(done).startswith(f"the new results in {row} are complete")
-    assert is_complete(row) and (row / "0.txt").read_text().startswith("second") and names(row.parent) == ["row"]
+    assert (
+        is_complete(row)
+        and (row / "0.txt").read_text().startswith("second")
+        and names(row.parent) == ["row"]
+    )
 
 
 @posix

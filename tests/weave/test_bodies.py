@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 from fabric_cad.weave.bodies import Body, BodyKind, Surface, SurfaceKind
 from fabric_cad.weave.directions import DIRECTIONS, Direction
 
-BODIES = st.just(Body(BodyKind.MATRIX)) | st.builds(Body.yarn, st.sampled_from(DIRECTIONS), st.integers(0, 10**6))
+BODIES = st.just(Body(BodyKind.MATRIX)) | st.builds(
+    Body.yarn, st.sampled_from(DIRECTIONS), st.integers(0, 10**6)
+)
 
 
 @given(BODIES, st.sampled_from(SurfaceKind))
@@ -16,7 +18,9 @@ def test_names_are_read_back(body, kind):
     assert Surface.named(Surface(body, kind).name) == Surface(body, kind)
 
 
-@pytest.mark.parametrize("name", ["", "weft", "weft_0", "weft_01", "weft_1_", "weft_-1", "yarn", "Weft_1", "weft_1\n"])
+@pytest.mark.parametrize(
+    "name", ["", "weft", "weft_0", "weft_01", "weft_1_", "weft_-1", "yarn", "Weft_1", "weft_1\n"]
+)
 def test_what_is_no_name_is_refused(name):
     with pytest.raises(ValueError):
         Body.named(name)

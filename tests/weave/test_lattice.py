@@ -13,7 +13,11 @@ LENGTHS, ANGLES = st.floats(0.01, 100), st.floats(-60, 60)
 def trellis(along_weft, along_warp, degrees):
     """Both directions turned towards each other by half an angle, and the fabric thicker."""
     half = np.radians(degrees) / 2
-    turned = [[np.cos(half), np.sin(half), 0], [np.sin(half), np.cos(half), 0], [0, 0, 1 / np.cos(2 * half)]]
+    turned = [
+        [np.cos(half), np.sin(half), 0],
+        [np.sin(half), np.cos(half), 0],
+        [0, 0, 1 / np.cos(2 * half)],
+    ]
     return Lattice(np.array([along_weft, along_warp]), np.array(turned))
 
 

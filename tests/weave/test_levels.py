@@ -31,7 +31,9 @@ def test_two_levels_span_an_amplitude(A1, A2):
     assert (low, high) == ((A1 - A2) / 2, (A1 + A2) / 2)
 
 
-@pytest.mark.parametrize("weave", [Weave(1, 1), Weave(3, 2), Weave(1, 7, 3), Weave(pattern=("110", "001"))])
+@pytest.mark.parametrize(
+    "weave", [Weave(1, 1), Weave(3, 2), Weave(1, 7, 3), Weave(pattern=("110", "001"))]
+)
 def test_of_two_crossing_yarns_one_has_the_other_below(weave):
     yarns = yarns_of(weave.interlacement())
     wefts, warps = ([yarn for yarn in yarns if yarn.direction is d] for d in Direction)

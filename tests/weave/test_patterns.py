@@ -69,7 +69,10 @@ def test_every_way_of_writing_reads_the_same(tmp_path, cell):
             "'10-Jan' has - a j n in it; a pattern is of 1 and 0, or of o and u, for a weft over and under a warp "
             "(a spreadsheet makes a date of 10/01, but not of ou/uo)",
         ),
-        ("/".join(["10", "01"] * 51), f"102 wefts x 2 warps are more than {MOST_YARNS} in a direction"),
+        (
+            "/".join(["10", "01"] * 51),
+            f"102 wefts x 2 warps are more than {MOST_YARNS} in a direction",
+        ),
     ],
 )
 def test_what_is_no_pattern_is_told(tmp_path, cell, expected):
@@ -91,7 +94,9 @@ def test_a_fabric_in_two_layers_is_refused():
     over = np.where(same, (wefts // 2 + warps // 2) % 2, wefts % 2 == 0)
     pattern = tuple("".join(map(str, row)) for row in over.tolist())
     (fault,) = pattern_faults(pattern)
-    assert fault.startswith("weft 1, 3 and warp 1, 3 lie over all other yarns: the weave falls into separate layers")
+    assert fault.startswith(
+        "weft 1, 3 and warp 1, 3 lie over all other yarns: the weave falls into separate layers"
+    )
     with pytest.raises(ValueError, match="separate layers"):
         Weave(pattern=pattern)
     tied = ("0" if pattern[0][1] == "1" else "1").join((pattern[0][:1], pattern[0][2:]))
@@ -106,21 +111,28 @@ def test_a_twill_spelt_as_a_pattern_is_the_twill():
     pattern = identify(table("pattern", {"name": "twill32", "pattern": spelt} | ROW))
     told = {"family", "over", "under", "step", "pattern"}
     one, other = (solved.row("twill32") for solved in (twill, pattern))
-    assert {k: v for k, v in one.items() if k not in told} == {k: v for k, v in other.items() if k not in told}
+    assert {k: v for k, v in one.items() if k not in told} == {
+        k: v for k, v in other.items() if k not in told
+    }
     one, other = twill["twill32"], pattern["twill32"]
     assert (one.weft, one.warp, one.period) == (other.weft, other.warp, other.period)
     yarns = [yarns_of(fabric.weave.interlacement()) for fabric in (one, other)]
     assert yarns[0] == yarns[1]
     for yarn in yarns[0]:
         first, second = (skin_of(fabric, yarn) for fabric in (one, other))
-        assert all(np.array_equal(a.poles, b.poles) for a, b in zip(first.patches, second.patches, strict=True))
+        assert all(
+            np.array_equal(a.poles, b.poles)
+            for a, b in zip(first.patches, second.patches, strict=True)
+        )
 
 
 @st.composite
 def patterns(draw):
     """Random interlacements of 2 to 7 wefts and warps in which every yarn interlaces."""
     wefts, warps = draw(st.integers(2, 7)), draw(st.integers(2, 7))
-    row = st.integers(1, 2**warps - 2).map(lambda number: f"{number:0{warps}b}")  # a weft that interlaces
+    row = st.integers(1, 2**warps - 2).map(
+        lambda number: f"{number:0{warps}b}"
+    )  # a weft that interlaces
     pattern = tuple(draw(st.lists(row, min_size=wefts, max_size=wefts)))
     assume(not pattern_faults(pattern))
     return pattern
@@ -131,7 +143,9 @@ def test_a_written_pattern_reads_back(pattern):
     assert read_pattern(written(pattern)) == pattern
 
 
-@given(patterns(), st.floats(0.0005, 0.02), st.floats(0.0005, 0.02) | st.none(), st.floats(0.7, 1.4))
+@given(
+    patterns(), st.floats(0.0005, 0.02), st.floats(0.0005, 0.02) | st.none(), st.floats(0.7, 1.4)
+)
 def test_yarns_have_their_crimp_on_average(pattern, weft_crimp, warp_crimp, ratio):
     """model: T transitions' excess length = e N a, N the yarns crossed in the cell, averaged over the yarns."""
     row = ROW | {"name": "r", "pattern": written(pattern), "weft_crimp": weft_crimp}
@@ -149,7 +163,9 @@ def test_yarns_have_their_crimp_on_average(pattern, weft_crimp, warp_crimp, rati
     yarns = yarns_of(fabric.weave.interlacement())
     for name, crimp in (("weft", weft_crimp), ("warp", warp_crimp)):
         direction, other = fabric.directions[name], fabric.crossed(name)
-        excess = excess_length(direction.slope, other.width, direction.crossed_spacing - other.width)
+        excess = excess_length(
+            direction.slope, other.width, direction.crossed_spacing - other.width
+        )
         transitions = [
             sum(a != b for a, b in zip(yarn.high, yarn.high[1:] + yarn.high[:1]))
             for yarn in yarns
@@ -159,7 +175,10 @@ def test_yarns_have_their_crimp_on_average(pattern, weft_crimp, warp_crimp, rati
         assert np.mean(transitions) * excess == pytest.approx(direction.crimp * length, rel=1e-9)
         assert crimp is None or direction.crimp == crimp
     if warp_crimp is None:  # balanced: yarns of one shape
-        assert fabric.weft.slope == fabric.warp.slope and fabric.weft.amplitude == fabric.warp.thickness
+        assert (
+            fabric.weft.slope == fabric.warp.slope
+            and fabric.weft.amplitude == fabric.warp.thickness
+        )
 
 
 def test_the_solved_table_keeps_the_pattern(tmp_path):
@@ -183,7 +202,9 @@ def test_the_report_tells_the_pattern(tmp_path):
         "warps": 3,
         "pattern": ["110", "001"],
     }
-    assert summary(report).startswith("rib: pattern 2 wefts x 3 warps, lenticular sections, 3 parameters\n")
+    assert summary(report).startswith(
+        "rib: pattern 2 wefts x 3 warps, lenticular sections, 3 parameters\n"
+    )
 
 
 def test_every_family_has_rows_and_a_master():

@@ -48,7 +48,9 @@ def edge_height(surface, path, segment, edge, level, share):
     side = f"{edge}_{level}"
     if side not in sides:
         side = {"lower": "bottom", "upper": "top"}[level]
-    t, _, z = points(patch_of(surface, segment, side), share, [0.0 if edge == "left" else 1.0])[:, 0].T
+    t, _, z = points(patch_of(surface, segment, side), share, [0.0 if edge == "left" else 1.0])[
+        :, 0
+    ].T
     piece = path.pieces[segment]
     return z - BSpline(piece.knots, piece.poles, piece.degree)(t)
 
@@ -84,7 +86,9 @@ def test_edges_run_straight_where_the_crossed_yarn_floats_on(draw, seed):
                 found = sign * edge_height(surface, path, segment, edge, touched, share)
                 floor = found[0 if planes[segment].crossing is None else -1]  # mid-gap
                 if fabric.section != "round":
-                    assert floor == pytest.approx(-fabric.directions[yarn.direction].thickness / 2, rel=1e-12)
+                    assert floor == pytest.approx(
+                        -fabric.directions[yarn.direction].thickness / 2, rel=1e-12
+                    )
                 if turns[crossing]:
                     outwards = found if planes[segment].crossing is None else found[::-1]
                     assert (np.diff(outwards) > -1e-12).all()
@@ -97,12 +101,21 @@ def test_edges_run_straight_where_the_crossed_yarn_floats_on(draw, seed):
 @settings(max_examples=15, deadline=None)
 def test_nothing_else_changes(draw, seed):
     """Crossings and the gaps in which a yarn changes sides are the same poles; the paper's section is the default."""
-    fabrics = {gap: fabric_of(lambda rng, gap=gap: with_gap(draw(rng), gap), seed) for gap in ("", *FLOAT_GAPS)}
+    fabrics = {
+        gap: fabric_of(lambda rng, gap=gap: with_gap(draw(rng), gap), seed)
+        for gap in ("", *FLOAT_GAPS)
+    }
     assert fabrics[""] == fabrics["symmetric"] and fabrics["symmetric"] != fabrics["flat"]
     for yarn in yarns_of(fabrics["flat"].weave.interlacement())[:2]:
         first, second = (skin_of(fabrics[gap], yarn).patches for gap in FLOAT_GAPS)
-        inside = {segment for segment, _ in float_half_gaps(yarn, control_planes(fabrics["flat"], yarn))}
-        changed = {a.segment for a, b in zip(first, second, strict=True) if a.poles.tobytes() != b.poles.tobytes()}
+        inside = {
+            segment for segment, _ in float_half_gaps(yarn, control_planes(fabrics["flat"], yarn))
+        }
+        changed = {
+            a.segment
+            for a, b in zip(first, second, strict=True)
+            if a.poles.tobytes() != b.poles.tobytes()
+        }
         assert changed == inside
 
 
@@ -117,9 +130,13 @@ def test_mid_gap_stands_the_section_of_a_flat_contact():
     swept = SweptYarn(fabric, yarn)
     planes, sections = swept.planes, swept.sections
     in_gaps = [section for plane, section in zip(planes, sections) if plane.crossing is None]
-    assert in_gaps[0] is in_gaps[3] is in_gaps[5]  # two changes of side, at the cut and after warp 3
+    assert (
+        in_gaps[0] is in_gaps[3] is in_gaps[5]
+    )  # two changes of side, at the cut and after warp 3
     assert in_gaps[1] is in_gaps[2] and in_gaps[4] not in (in_gaps[0], in_gaps[1])
-    assert in_gaps[1] is next(s for plane, s in zip(planes, sections) if plane.crossing == 1)  # warp 2 floats on
+    assert in_gaps[1] is next(
+        s for plane, s in zip(planes, sections) if plane.crossing == 1
+    )  # warp 2 floats on
     low, high = -fabric.weft.thickness / 2, fabric.weft.thickness / 2
     assert (in_gaps[1].strips["bottom"].poles[:, 1] == low).all()
     assert (in_gaps[4].strips["top"].poles[:, 1] == high).all()
@@ -127,11 +144,15 @@ def test_mid_gap_stands_the_section_of_a_flat_contact():
 
 def test_a_plain_weave_has_no_floats():
     fabrics = [
-        identify(table("plain", UNBALANCED | {"weft_thickness_mm": 0.3, "float_gap": gap}))["unbalanced"]
+        identify(table("plain", UNBALANCED | {"weft_thickness_mm": 0.3, "float_gap": gap}))[
+            "unbalanced"
+        ]
         for gap in FLOAT_GAPS
     ]
     for yarn in yarns_of(fabrics[0].weave.interlacement()):
-        first, second = ([patch.poles.tobytes() for patch in skin_of(fabric, yarn).patches] for fabric in fabrics)
+        first, second = (
+            [patch.poles.tobytes() for patch in skin_of(fabric, yarn).patches] for fabric in fabrics
+        )
         assert first == second
 
 
@@ -185,11 +206,14 @@ def test_volumes_are_those_of_the_solids(made):
         return
     table_of_one = identify_rows(row)
     for direction, volume in yarn_volumes(table_of_one.columns, row.weaves).items():
-        measured = sum(solid.Volume(1e-9) for name, solid in solids.items() if name.startswith(direction))
+        measured = sum(
+            solid.Volume(1e-9) for name, solid in solids.items() if name.startswith(direction)
+        )
         assert volume[0] == pytest.approx(measured, rel=1e-9)
     paper = identify_rows(replace(row, float_gaps=("symmetric",)))
     assert report["volumes"]["yarn_mm3"] == pytest.approx(
-        sum(float(volume[0]) for volume in yarn_volumes(paper.columns, row.weaves).values()), rel=1e-9
+        sum(float(volume[0]) for volume in yarn_volumes(paper.columns, row.weaves).values()),
+        rel=1e-9,
     )
 
 
@@ -203,7 +227,10 @@ def test_the_column_is_read_and_told(tmp_path):
     (tmp_path / "wrong.csv").write_text(text.replace(",flat,", ",flatt,"))
     with pytest.raises(InputError, match="'flatt' is none of symmetric, flat"):
         read_solved(tmp_path / "wrong.csv")
-    without = [",".join(cell for k, cell in enumerate(line.split(",")) if k != 8) for line in text.splitlines()]
+    without = [
+        ",".join(cell for k, cell in enumerate(line.split(",")) if k != 8)
+        for line in text.splitlines()
+    ]
     (tmp_path / "before.csv").write_text("\n".join(without))
     assert read_solved(tmp_path / "before.csv").float_gap == "symmetric"
 
@@ -214,14 +241,24 @@ def test_the_picture_of_the_edges():
         fabric = identify(flat_twill(over=1, under=4, float_gap=gap))["twill32"]
         axes = Figure().subplots()
         plot_edges(fabric, axes, "weft", 1)
-        x, midline, left, right = (axes.lines[0].get_xdata(), *(line.get_ydata() for line in axes.lines))
+        x, midline, left, right = (
+            axes.lines[0].get_xdata(),
+            *(line.get_ydata() for line in axes.lines),
+        )
         assert [line.get_label() for line in axes.lines] == ["midline", "left edge", "right edge"]
         grey = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in axes.patches]
-        spacing, half = fabric.weft.crossed_spacing, (fabric.weft.crossed_spacing - fabric.warp.width) / 2
+        spacing, half = (
+            fabric.weft.crossed_spacing,
+            (fabric.weft.crossed_spacing - fabric.warp.width) / 2,
+        )
         middles = np.array([2, 3, 4]) * spacing  # weft 1 passes over warp 1, and under the others
         assert np.array(grey) == pytest.approx(np.column_stack([middles - half, middles + half]))
         inside = np.any([(x >= low) & (x <= high) for low, high in grey], axis=0)
         spans.append(np.maximum(left - midline, right - midline)[inside])
     thickness = fabric.weft.thickness
-    assert spans[0].min() == pytest.approx(0, abs=1e-3 * thickness)  # mid-height, in the middle of a gap
-    assert spans[1] == pytest.approx(thickness / 2)  # one edge or the other stays on the float's side
+    assert spans[0].min() == pytest.approx(
+        0, abs=1e-3 * thickness
+    )  # mid-height, in the middle of a gap
+    assert spans[1] == pytest.approx(
+        thickness / 2
+    )  # one edge or the other stays on the float's side

@@ -2,7 +2,15 @@
 
 import numpy as np
 import pytest
-from fabrics import TWILL32, flat_gaps, random_general_row, random_pattern_row, random_row, skin_of, table
+from fabrics import (
+    TWILL32,
+    flat_gaps,
+    random_general_row,
+    random_pattern_row,
+    random_row,
+    skin_of,
+    table,
+)
 from hypothesis import given, settings
 from scipy.interpolate import BSpline
 from sweeps import fabric_of, patch_of, points, seeds
@@ -63,7 +71,9 @@ def test_neighbouring_faces_have_common_points_and_tangents(draw, seed):
                 *((a, b, 0.0) for a, b in zip(strip, strip[1:])),
                 (strip[-1], strip[0], shift),
             ]:
-                assert points(first, [1.0], share) == pytest.approx(points(second, [0.0], share) + moved, abs=1e-11)
+                assert points(first, [1.0], share) == pytest.approx(
+                    points(second, [0.0], share) + moved, abs=1e-11
+                )
                 ends = points(first, [1.0], share, along=1), points(second, [0.0], share, along=1)
                 assert ends[0] == pytest.approx(ends[1], abs=1e-9)
 
@@ -78,14 +88,20 @@ def test_sections_fill_their_envelope_and_nothing_else(draw, seed):
         solved = fabric.directions[yarn.direction]
         for section in SweptYarn(fabric, yarn).sections:
             v, z = section_outline(section, 801)
-            assert (v.min(), v.max()) == pytest.approx((-solved.width / 2, solved.width / 2), rel=1e-9)
-            assert (z.min(), z.max()) == pytest.approx((-solved.thickness / 2, solved.thickness / 2), rel=1e-5)
+            assert (v.min(), v.max()) == pytest.approx(
+                (-solved.width / 2, solved.width / 2), rel=1e-9
+            )
+            assert (z.min(), z.max()) == pytest.approx(
+                (-solved.thickness / 2, solved.thickness / 2), rel=1e-5
+            )
             assert np.sum(v[:-1] * z[1:] - v[1:] * z[:-1]) > 0  # counter-clockwise
             assert section.pointed == (fabric.section == "lenticular")
             assert section.rounded == (fabric.section == "round")
             if fabric.section == "flat":
                 for side in ("left", "right"):
-                    assert np.ptp(section.strips[side].poles[:, 1]) == pytest.approx(fabric.lateral_height)
+                    assert np.ptp(section.strips[side].poles[:, 1]) == pytest.approx(
+                        fabric.lateral_height
+                    )
 
 
 @given(seeds)
@@ -93,7 +109,12 @@ def test_sections_fill_their_envelope_and_nothing_else(draw, seed):
 def test_round_sections_are_smooth_all_around(seed):
     fabric = fabric_of(lambda rng: random_general_row(rng, form="round"), seed)
     yarns = yarns_of(fabric.weave.interlacement())
-    joints = [("bottom", "right_lower"), ("left_lower", "bottom"), ("top", "right_upper"), ("left_upper", "top")]
+    joints = [
+        ("bottom", "right_lower"),
+        ("left_lower", "bottom"),
+        ("top", "right_upper"),
+        ("left_upper", "top"),
+    ]
     for yarn in (yarns[0], yarns[-1]):
         for section in SweptYarn(fabric, yarn).sections:
             for before, after in joints:
@@ -102,7 +123,12 @@ def test_round_sections_are_smooth_all_around(seed):
                 tangents = first[-1, :2] - first[-2, :2], second[1, :2] - second[0, :2]
                 (a, b), (c, d) = (tangent / np.linalg.norm(tangent) for tangent in tangents)
                 assert abs(a * d - b * c) < 1e-6
-            for side in ("right_lower", "left_lower", "right_upper", "left_upper"):  # vertical at the edge
+            for side in (
+                "right_lower",
+                "left_lower",
+                "right_upper",
+                "left_upper",
+            ):  # vertical at the edge
                 poles = section.strips[side].poles
                 edge = poles[[-1, -2]] if side.startswith("right") else poles[[0, 1]]
                 assert edge[0, 0] == pytest.approx(edge[1, 0], abs=1e-12)
@@ -118,7 +144,10 @@ def test_the_trajectory_passes_the_control_points():
         piece = next(p for p in path.pieces if p.knots[0] <= x <= p.knots[-1])
         return float(BSpline(piece.knots, piece.poles, piece.degree)(x))
 
-    period, middle = fabric.period[0], 4 * fabric.weft.crossed_spacing  # M11: mid-float under warps 4 and 5
+    period, middle = (
+        fabric.period[0],
+        4 * fabric.weft.crossed_spacing,
+    )  # M11: mid-float under warps 4 and 5
     for x, height_there in fabric.weft.points:
         for place in (middle + x, middle - x):
             assert z(place % period) == pytest.approx(height_there, abs=1e-12)
@@ -156,4 +185,6 @@ def test_a_swept_yarn_is_made_once_and_starts_and_ends_in_its_sections(draw, see
             for end, place in ((0, piece.poles[0]), (1, piece.poles[-1])):
                 strip = swept.sections[patch.segment + end].strips[patch.side]
                 expected = strip.at(share) + [0.0, place]
-                np.testing.assert_allclose(patch.at([end], share)[0, :, 1:], expected, rtol=0, atol=1e-12)
+                np.testing.assert_allclose(
+                    patch.at([end], share)[0, :, 1:], expected, rtol=0, atol=1e-12
+                )

@@ -17,7 +17,9 @@ from fabric_cad.yarn.tiles import COARSE, SIDES, Grid, basis
 from fabric_cad.yarn.volumes import yarn_volumes
 
 SHIPPED = {
-    fabric.name: fabric for measured in read_families(shipped_families()).values() for fabric in identify(measured)
+    fabric.name: fabric
+    for measured in read_families(shipped_families()).values()
+    for fabric in identify(measured)
 }
 
 
@@ -53,14 +55,20 @@ def test_points_of_tiles_are_those_of_the_swept_yarns_patches(name):
     fabric, grid = FABRICS[name], COARSE
     for tiled in tessellate(fabric, grid):
         points = standing(tiled.tiles)
-        for yarn in (yarn for yarn in yarns_of(fabric.weave.interlacement()) if yarn.direction == tiled.direction):
+        for yarn in (
+            yarn
+            for yarn in yarns_of(fabric.weave.interlacement())
+            if yarn.direction == tiled.direction
+        ):
             swept = SweptYarn(fabric, yarn)
             gaps = [number for number, plane in enumerate(swept.planes) if plane.crossing is None]
             for crossing, (first, last) in enumerate(zip(gaps, gaps[1:])):
                 own = points[(tiled.tiles.yarn == yarn.index)][crossing]
                 patches = [patch for patch in swept.skin.patches if first <= patch.segment < last]
                 expected = _on_patches(patches, first, grid) + [0.0, swept.trajectory.axis, 0.0]
-                assert np.abs(own - in_plan(tiled.direction, expected)).max() < 1e-12 * max(fabric.period)
+                assert np.abs(own - in_plan(tiled.direction, expected)).max() < 1e-12 * max(
+                    fabric.period
+                )
 
 
 def _on_patches(patches, first, grid):
@@ -71,7 +79,9 @@ def _on_patches(patches, first, grid):
     strips = []
     for side in sides:
         rows = []
-        for intervals, patch in zip(grid.along[segments], (patch for patch in patches if patch.side == side)):
+        for intervals, patch in zip(
+            grid.along[segments], (patch for patch in patches if patch.side == side)
+        ):
             values = patch.at(np.linspace(0, 1, intervals + 1), np.linspace(0, 1, across[side] + 1))
             rows.append(values if not rows else values[1:])
         strips.append(np.vstack(rows).reshape(-1, 3))
@@ -142,14 +152,18 @@ def volume(tiled):
     return total
 
 
-@pytest.mark.parametrize("name", ["plain_flat", "twill22_chords", "twill22_round", "satin8", "patterns-1", "round-0"])
+@pytest.mark.parametrize(
+    "name", ["plain_flat", "twill22_chords", "twill22_round", "satin8", "patterns-1", "round-0"]
+)
 def test_normals_are_unit_and_those_of_the_triangles_in_the_limit(name):
     fine = Grid({3: (12, 18, 12), 5: (9, 6, 12, 6, 9)}, {1: (36,), 3: (9, 18, 9)})
     for tiled in tessellate(FABRICS[name], fine):
         for tiling in (tiled.tiles, tiled.caps):
             assert np.abs(np.linalg.norm(tiling.normals, axis=-1) - 1).max() < 1e-12
             corners = tiling.points[:, tiling.triangles]
-            faces = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
+            faces = np.cross(
+                corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0]
+            )
             sizes = np.linalg.norm(faces, axis=-1)
             means = tiling.normals[:, tiling.triangles].mean(axis=2)
             sines = np.linalg.norm(np.cross(faces, means), axis=-1)
@@ -193,4 +207,6 @@ def test_a_tile_is_not_made_twice_and_arrays_cannot_be_written_to():
 
 @pytest.mark.parametrize("name", FABRICS)
 def test_the_edges_of_tiles_allow_what_those_of_the_yarns_do(name):
-    assert allowed_over(swept_tiles(FABRICS[name])) == pytest.approx(allowed_scaled_jacobian(FABRICS[name]), rel=1e-9)
+    assert allowed_over(swept_tiles(FABRICS[name])) == pytest.approx(
+        allowed_scaled_jacobian(FABRICS[name]), rel=1e-9
+    )

@@ -24,10 +24,17 @@ class DesignOptions(Options):
 
 def declare(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``design``."""
-    parser.add_argument("row", metavar="ROW", nargs="?", help=f"row to begin with (default: {_FIRST})")
-    parser.add_argument("--port", type=whole, default=0, metavar="N", help="port (default: one that is free)")
     parser.add_argument(
-        "--no-browser", dest="browser", action="store_false", help="print the address and open no browser"
+        "row", metavar="ROW", nargs="?", help=f"row to begin with (default: {_FIRST})"
+    )
+    parser.add_argument(
+        "--port", type=whole, default=0, metavar="N", help="port (default: one that is free)"
+    )
+    parser.add_argument(
+        "--no-browser",
+        dest="browser",
+        action="store_false",
+        help="print the address and open no browser",
     )
 
 

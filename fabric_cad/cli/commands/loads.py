@@ -91,13 +91,19 @@ def load(name: str, case: str, options: LoadOptions, voice: Voice) -> None:
     stages = Stages(voice.stage)
     if options.deck:
         settings = read_settings(options.families, name)
-        decks = write_case(case, row, settings, options.out, dialect=options.deck, mesh=options.mesh, stages=stages)
+        decks = write_case(
+            case, row, settings, options.out, dialect=options.deck, mesh=options.mesh, stages=stages
+        )
         voice.files(decks)
         return
 
-    solver = Solver(find_solver(options.ccx), options.threads or cores(), options.time_limit, voice.increment)
+    solver = Solver(
+        find_solver(options.ccx), options.threads or cores(), options.time_limit, voice.increment
+    )
     settings = read_settings(options.families, name)
-    report = make_case(case, row, settings, options.out, solver=solver, mesh=options.mesh, stages=stages)
+    report = make_case(
+        case, row, settings, options.out, solver=solver, mesh=options.mesh, stages=stages
+    )
     voice.warn(report.warnings)
     if voice.quiet:
         return

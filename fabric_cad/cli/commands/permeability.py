@@ -101,7 +101,10 @@ def make(name: str, options: PermeabilityOptions, voice: Voice) -> None:
     )
     voice.warn(report.warnings)
     voice.summary(summary(report))
-    voice.files(Path(options.out) / name / f"permeability.{kind}" for kind in ("json", "csv", "vtu", "png", "pdf"))
+    voice.files(
+        Path(options.out) / name / f"permeability.{kind}"
+        for kind in ("json", "csv", "vtu", "png", "pdf")
+    )
     voice.flush()
 
 

@@ -50,7 +50,11 @@ def make(name: str, options: StiffnessOptions, voice: Voice) -> None:
     from ...composite.stiffness.summary import summary
 
     row = find_row(name, options, voice)
-    how: dict[str, Any] = {"mesh": options.mesh, "options": options.box, "stages": Stages(voice.stage)}
+    how: dict[str, Any] = {
+        "mesh": options.mesh,
+        "options": options.box,
+        "stages": Stages(voice.stage),
+    }
     if options.deck:
         voice.files([make_deck(row, options.families, options.out, dialect=options.deck, **how)])
         return
@@ -58,7 +62,10 @@ def make(name: str, options: StiffnessOptions, voice: Voice) -> None:
     report = make_stiffness(row, options.families, options.out, plate=options.plate, **how)
     voice.warn(report.warnings)
     voice.summary(summary(report))
-    voice.files(Path(options.out) / name / f"stiffness.{kind}" for kind in ("json", "csv", "png", "pdf", "pvd"))
+    voice.files(
+        Path(options.out) / name / f"stiffness.{kind}"
+        for kind in ("json", "csv", "png", "pdf", "pvd")
+    )
     voice.flush()
 
 

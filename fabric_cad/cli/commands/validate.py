@@ -48,7 +48,9 @@ def run(options: Options, voice: Voice) -> int:
 
 def _print_comparisons(voice: Voice, comparisons: Lines, differences: list[float]) -> None:
     if not comparisons:
-        voice.result("no row measures more than what identifies it: nothing to compare with the model")
+        voice.result(
+            "no row measures more than what identifies it: nothing to compare with the model"
+        )
         return
 
     voice.table([("row", "quantity", "measured", "model", "difference %"), *comparisons])

@@ -36,7 +36,9 @@ def declare(parser: argparse.ArgumentParser) -> None:
 
 def _counts(text: str) -> tuple[int, int, int]:
     if not (match := re.fullmatch(r"(\d{1,9})x(\d{1,9})x(\d{1,9})", text.strip().lower())):
-        raise argparse.ArgumentTypeError(f"{text!r} is not three numbers of voxels, such as 200x200x60")
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not three numbers of voxels, such as 200x200x60"
+        )
 
     return int(match[1]), int(match[2]), int(match[3])
 
@@ -55,7 +57,9 @@ def make(name: str, options: VoxelOptions, voice: Voice) -> None:
     row = find_row(name, options, voice)
     margin = Margin() if options.margin is None else Margin.read(options.margin)
     counts = (options.cells[0], options.cells[1], options.cells[2])
-    voxels = make_voxels(row, options.families, options.out, counts, margin=margin, stages=Stages(voice.stage))
+    voxels = make_voxels(
+        row, options.families, options.out, counts, margin=margin, stages=Stages(voice.stage)
+    )
 
     share = sum(voxels.fractions().values())
     voice.summary(f"{name}: {'x'.join(map(str, counts))} voxels, {100 * share:.2f} % yarns")

@@ -4,8 +4,8 @@
 
     K[a i, b k] = sum over elements and j, l of c[i, k, j, l] M[a j, b l],   M = integral of dN_a/dx_j dN_b/dx_l
 
-which serves elasticity (blocks 3 x 3, c = C_ijkl) and conduction (1 x 1, c = k_jl) alike. The coefficients are
-constant over an element, so that M is made once an element for all blocks.
+which serves elasticity (blocks 3 x 3, c = C_ijkl) and conduction (1 x 1, c = k_jl) alike. The
+coefficients are constant over an element, so that M is made once an element for all blocks.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
 class Integrals:
     """Integrals over every element.
 
-    ``gradients`` and ``moments`` (elements, 8, 3): of the basis functions' gradients, mm2, and of those times
-    the height above the middle of the cell, mm3; ``volumes`` (3, elements): of 1, of that height and of its
-    square; ``corners`` (elements, 8): the unknowns.
+    ``gradients`` and ``moments`` (elements, 8, 3): of the basis functions' gradients, mm2, and of
+    those times the height above the middle of the cell, mm3; ``volumes`` (3, elements): of 1, of
+    that height and of its square; ``corners`` (elements, 8): the unknowns.
     """
 
     gradients: np.ndarray
@@ -40,7 +40,10 @@ class Integrals:
 
 
 def assemble(elements: Elements, coefficients: np.ndarray) -> tuple[bsr_array, Integrals]:
-    """The matrix, in blocks n x n, of ``coefficients`` (elements, n, n, 3, 3), c[i, k, j, l] above; the integrals."""
+    """The matrix, in blocks n x n, of ``coefficients`` (elements, n, n, 3, 3), c[i, k, j, l] above.
+
+    The integrals.
+    """
     count, size = elements.count, coefficients.shape[1]
     from scipy.sparse import bsr_array
 
@@ -48,12 +51,20 @@ def assemble(elements: Elements, coefficients: np.ndarray) -> tuple[bsr_array, I
     rows, columns, places = _pattern(corners, count)
     blocks = np.zeros((len(columns), size, size))
     integrals = Integrals(
-        np.empty((len(corners), 8, 3)), np.empty((len(corners), 8, 3)), np.empty((3, len(corners))), corners
+        np.empty((len(corners), 8, 3)),
+        np.empty((len(corners), 8, 3)),
+        np.empty((3, len(corners))),
+        corners,
     )
+
     for chunk in elements.chunks():
         own, weights, gradients = chunk.elements, chunk.weights, chunk.gradients
         raised = weights * chunk.heights
-        integrals.volumes[:, own] = weights.sum(axis=1), raised.sum(axis=1), (raised * chunk.heights).sum(axis=1)
+        integrals.volumes[:, own] = (
+            weights.sum(axis=1),
+            raised.sum(axis=1),
+            (raised * chunk.heights).sum(axis=1),
+        )
         integrals.gradients[own] = np.einsum("nq,nqaj->naj", weights, gradients)
         integrals.moments[own] = np.einsum("nq,nqaj->naj", raised, gradients)
 
@@ -72,17 +83,21 @@ def elastic_coefficients(stiffness: np.ndarray) -> np.ndarray:
     return stiffness[:, VOIGT[i, j], VOIGT[k, l]]
 
 
-def forces(integrals: np.ndarray, stresses: np.ndarray, corners: np.ndarray, count: int) -> np.ndarray:
+def forces(
+    integrals: np.ndarray, stresses: np.ndarray, corners: np.ndarray, count: int
+) -> np.ndarray:
     """Nodal forces (count, 3, loads) of ``stresses`` (elements, 6, loads), constant over an element.
 
-    ``integrals`` (elements, 8, 3) are those of the gradients, or their moments where the stresses are a rate over
-    the height.
+    ``integrals`` (elements, 8, 3) are those of the gradients, or their moments where the stresses
+    are a rate over the height.
     """
     total = np.zeros((count, 3, stresses.shape[2]))
     for i in range(3):
         own = np.einsum("naj,njm->nam", integrals, stresses[:, VOIGT[i]])
         for load in range(stresses.shape[2]):
-            total[:, i, load] = np.bincount(corners.ravel(), own[..., load].ravel(), minlength=count)
+            total[:, i, load] = np.bincount(
+                corners.ravel(), own[..., load].ravel(), minlength=count
+            )
 
     return total
 
@@ -104,4 +119,8 @@ def _pattern(corners: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, n
     blocks, places = np.unique(keys, return_inverse=True)
     rows, columns = np.divmod(blocks, count)
     starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=count))])
-    return starts.astype(np.int32), columns.astype(np.int32), places.reshape(keys.shape).astype(np.int32)
+    return (
+        starts.astype(np.int32),
+        columns.astype(np.int32),
+        places.reshape(keys.shape).astype(np.int32),
+    )

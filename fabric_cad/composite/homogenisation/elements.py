@@ -21,7 +21,9 @@ import numpy as np
 
 from .periodicity import PeriodicMesh, periodic_pairs
 
-_UNIT_CUBE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+_UNIT_CUBE = np.array(
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+)
 _CHUNK = 2048  # elements, so that what is made of them stays in the cache
 
 
@@ -29,8 +31,8 @@ _CHUNK = 2048  # elements, so that what is made of them stays in the cache
 class Chunk:
     """Some elements at 2 x 2 x 2 points: ``elements`` (n,) their indices, ``corners`` (n, 8) their unknowns.
 
-    ``gradients`` (n, points, 8, 3), 1/mm, of the corners' basis functions; ``weights`` (n, points), mm3;
-    ``heights`` (n, points), mm, of the points above the cell's middle.
+    ``gradients`` (n, points, 8, 3), 1/mm, of the corners' basis functions; ``weights`` (n, points),
+    mm3; ``heights`` (n, points), mm, of the points above the cell's middle.
     """
 
     elements: np.ndarray
@@ -44,8 +46,8 @@ class Chunk:
 class Elements:
     """The elements of a periodic mesh, chunk by chunk, with nodes that are the same by a period numbered as one.
 
-    Raises :class:`~fabric_cad.support.errors.BuildError` where faces that repeat do not match, ValueError where an
-    element reaches from one to the other.
+    Raises :class:`~fabric_cad.support.errors.BuildError` where faces that repeat do not match,
+    ValueError where an element reaches from one to the other.
     """
 
     mesh: PeriodicMesh
@@ -64,7 +66,10 @@ class Elements:
 
     @property
     def places(self) -> np.ndarray:
-        """Where every unknown is, (unknowns, 3) mm; one of its places where it is on faces that repeat."""
+        """Where every unknown is, (unknowns, 3) mm.
+
+        One of its places where it is on faces that repeat.
+        """
         places = np.empty((self.count, 3))
         places[self.unknowns] = self.mesh.points
         return places
@@ -74,11 +79,19 @@ class Elements:
         skfem = _scikit_fem()
         _, back = _to_skfem()
         middle = self.mesh.origin[2] + self.mesh.vectors[2, 2] / 2
+
         for start in range(0, len(self.mesh.hexahedra), _CHUNK):
             elements = np.arange(start, min(start + _CHUNK, len(self.mesh.hexahedra)))
-            mapping = skfem.MappingIsoparametric(self._skfem, skfem.ElementHex1(), skfem.ElementQuad1())
+            mapping = skfem.MappingIsoparametric(
+                self._skfem, skfem.ElementHex1(), skfem.ElementQuad1()
+            )
             basis = skfem.CellBasis(
-                self._skfem, skfem.ElementHex1(), mapping, intorder=2, elements=elements, disable_doflocs=True
+                self._skfem,
+                skfem.ElementHex1(),
+                mapping,
+                intorder=2,
+                elements=elements,
+                disable_doflocs=True,
             )
             gradients = np.stack([basis.basis[corner][0].grad for corner in back])
             yield Chunk(
@@ -110,7 +123,10 @@ class Elements:
 def _to_skfem() -> tuple[np.ndarray, np.ndarray]:
     """VTK's corner at each of scikit-fem's, and scikit-fem's at each of VTK's, (8,) each."""
     to = np.array(
-        [int(np.flatnonzero((_UNIT_CUBE == corner).all(axis=1))[0]) for corner in _scikit_fem().refdom.RefHex.p.T]
+        [
+            int(np.flatnonzero((_UNIT_CUBE == corner).all(axis=1))[0])
+            for corner in _scikit_fem().refdom.RefHex.p.T
+        ]
     )
     return to, np.argsort(to)
 

@@ -23,8 +23,9 @@ PLATE_STRAINS[0, [0, 1, 5], [0, 1, 2]] = PLATE_STRAINS[1, [0, 1, 5], [3, 4, 5]] 
 class Materials:
     """What every element is made of.
 
-    ``stiffness`` (elements, 6, 6) MPa; ``expansion`` (elements, 6), strain per kelvin, ``conductivity``
-    (elements, 3, 3) W/(m K) and ``density`` (elements,) g/cm3, None where not known.
+    ``stiffness`` (elements, 6, 6) MPa; ``expansion`` (elements, 6), strain per kelvin,
+    ``conductivity`` (elements, 3, 3) W/(m K) and ``density`` (elements,) g/cm3, None where not
+    known.
     """
 
     stiffness: np.ndarray
@@ -37,8 +38,9 @@ class Materials:
 class Effective:
     """A cell as one material, xx yy zz yz xz xy with engineering shear.
 
-    ``stiffness``, ``voigt`` and ``reuss`` (6, 6) MPa; ``expansion`` (6,), strain per kelvin; ``conductivity`` (3, 3)
-    W/(m K); ``density`` g/cm3; each None where not known. ``response`` is that to :data:`UNIT_STRAINS`.
+    ``stiffness``, ``voigt`` and ``reuss`` (6, 6) MPa; ``expansion`` (6,), strain per kelvin;
+    ``conductivity`` (3, 3) W/(m K); ``density`` g/cm3; each None where not known. ``response`` is
+    that to :data:`UNIT_STRAINS`.
     """
 
     stiffness: np.ndarray
@@ -54,8 +56,8 @@ class Effective:
 class Plate:
     """A cell as a plate with free floor and ceiling: ``A`` N/mm, ``B`` N, ``D`` N mm, each (3, 3) in xx, yy, xy.
 
-    ``thickness`` mm is that of the cell, from whose middle bending is measured; ``response`` is that to
-    :data:`PLATE_STRAINS`.
+    ``thickness`` mm is that of the cell, from whose middle bending is measured; ``response`` is
+    that to :data:`PLATE_STRAINS`.
     """
 
     A: np.ndarray
@@ -78,9 +80,14 @@ def homogenise(mesh: PeriodicMesh, materials: Materials) -> Effective:
     stiffness = response.work / volume
 
     expansion = None
-    if materials.expansion is not None:  # V. M. Levin, Mechanics of Solids 2 (1967) 58-61: no load of its own
+    if (
+        materials.expansion is not None
+    ):  # V. M. Levin, Mechanics of Solids 2 (1967) 58-61: no load of its own
         stress = np.einsum("nij,nj->ni", materials.stiffness, materials.expansion)
-        expansion = np.linalg.solve(stiffness, work_of_stress(response, stress, UNIT_STRAINS) / volume)
+        expansion = np.linalg.solve(
+            stiffness, work_of_stress(response, stress, UNIT_STRAINS) / volume
+        )
+
     conductivity = None
     if materials.conductivity is not None:
         conductivity = conduction_response(elements, materials.conductivity).work / volume
@@ -96,7 +103,10 @@ def homogenise(mesh: PeriodicMesh, materials: Materials) -> Effective:
 
 
 def homogenise_plate(mesh: PeriodicMesh, materials: Materials) -> Plate:
-    """The stiffness of a cell that repeats along its first two edges, as a plate; raises as :func:`homogenise`."""
+    """The stiffness of a cell that repeats along its first two edges, as a plate.
+
+    Raises as :func:`homogenise`.
+    """
     if mesh.periodic != (True, True, False):
         raise ValueError("a plate repeats along its first two edges and not through its thickness")
 

@@ -1,7 +1,7 @@
 """Loops that numpy has no word for, compiled by numba at their first use and kept in its cache.
 
-Beside scipy's product of a block matrix with six vectors the one here takes a third to a fifth of the time, and
-:func:`sweep` cannot be had from numpy without many small steps.
+Beside scipy's product of a block matrix with six vectors the one here takes a third to a fifth of
+the time, and :func:`sweep` cannot be had from numpy without many small steps.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ def multiply(starts, columns, blocks, vectors, product):
                         + second * vectors[column, 1, load]
                         + third * vectors[column, 2, load]
                     )
+
         for i in range(3):
             for load in range(6):
                 product[row, i, load] = total[i, load]
@@ -47,8 +48,9 @@ def multiply(starts, columns, blocks, vectors, product):
 def sweep(order, follows, inverse, carried, vectors, result):
     """Solve a block-tridiagonal system along every line of ``order``, for ``vectors`` (rows, 3, 6), into ``result``.
 
-    ``follows`` (rows,) is False where a line starts in ``order``; ``inverse`` (rows, 3, 3) are the pivots'
-    inverses and ``carried`` (rows, 3, 3) those times the block to the next of the line, both in this order.
+    ``follows`` (rows,) is False where a line starts in ``order``; ``inverse`` (rows, 3, 3) are the
+    pivots' inverses and ``carried`` (rows, 3, 3) those times the block to the next of the line,
+    both in this order.
     """
     count = len(order)
     for place in range(count):
@@ -60,6 +62,7 @@ def sweep(order, follows, inverse, carried, vectors, result):
                     before = order[place - 1]
                     for j in range(3):
                         value -= carried[place - 1, j, i] * result[before, j, load]
+
                 result[row, i, load] = value
 
     scratch = np.empty((3, 6))
@@ -75,7 +78,9 @@ def sweep(order, follows, inverse, carried, vectors, result):
                     after = order[place + 1]
                     for j in range(3):
                         value -= carried[place, i, j] * result[after, j, load]
+
                 scratch[i, load] = value
+
         for i in range(3):
             for load in range(6):
                 result[row, i, load] = scratch[i, load]

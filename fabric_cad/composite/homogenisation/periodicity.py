@@ -15,8 +15,9 @@ _NEAR = 1e-7  # of a period: nodes nearer than this to a face, or to each other'
 class PeriodicMesh:
     """Hexahedra of a cell that repeats.
 
-    ``points`` (nodes, 3) mm; ``hexahedra`` (elements, 8), corners as in VTK and C3D8; ``vectors`` (3, 3): the
-    cell's three edges as rows, mm, from its corner ``origin`` (3,); ``periodic`` says along which of them it repeats.
+    ``points`` (nodes, 3) mm; ``hexahedra`` (elements, 8), corners as in VTK and C3D8; ``vectors``
+    (3, 3): the cell's three edges as rows, mm, from its corner ``origin`` (3,); ``periodic`` says
+    along which of them it repeats.
     """
 
     points: np.ndarray
@@ -52,11 +53,17 @@ def periodic_pairs(mesh: PeriodicMesh) -> tuple[np.ndarray, np.ndarray]:
     if distance.max() > _NEAR:
         worst = mesh.points[slaves[int(np.argmax(distance))]]
         place = ", ".join(f"{value:.6g}" for value in worst)
-        raise BuildError(f"the faces of the cell do not match: the node at ({place}) mm has no image a period away")
+        raise BuildError(
+            f"the faces of the cell do not match: the node at ({place}) mm has no image a period away"
+        )
 
-    for axis in np.flatnonzero(mesh.periodic):  # a plain count, so that no near face has nodes of its own
+    for axis in np.flatnonzero(
+        mesh.periodic
+    ):  # a plain count, so that no near face has nodes of its own
         if np.count_nonzero(far[:, axis]) != np.count_nonzero(near[:, axis]):
             counts = f"{np.count_nonzero(near[:, axis])} and {np.count_nonzero(far[:, axis])}"
-            raise BuildError(f"the faces of the cell do not match: there are {counts} nodes on two faces that repeat")
+            raise BuildError(
+                f"the faces of the cell do not match: there are {counts} nodes on two faces that repeat"
+            )
 
     return slaves, masters[partner]

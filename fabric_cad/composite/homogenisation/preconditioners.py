@@ -24,7 +24,13 @@ def product(matrix: bsr_array, loads: int) -> Operator:
 
     def multiplied(values: np.ndarray) -> np.ndarray:
         result = np.empty_like(values)
-        multiply(matrix.indptr, matrix.indices, matrix.data, values.reshape(-1, 3, 6), result.reshape(-1, 3, 6))
+        multiply(
+            matrix.indptr,
+            matrix.indices,
+            matrix.data,
+            values.reshape(-1, 3, 6),
+            result.reshape(-1, 3, 6),
+        )
         return result
 
     return multiplied
@@ -44,9 +50,9 @@ def block_jacobi(matrix: bsr_array) -> Operator:
 def vertical_lines(matrix: bsr_array, points: np.ndarray) -> Operator:
     """The inverse of the blocks of all nodes ``points`` (nodes, 3), mm, that stand above each other, and of them alone.
 
-    Layers are thinner than elements are wide, so that neighbours on a vertical line are the ones that
-    pull most. Of an element two nodes lie on a line, so that what is left of its own matrix, and with it
-    the whole, stays positive definite. For matrices of blocks 3 x 3 and six vectors.
+    Layers are thinner than elements are wide, so that neighbours on a vertical line are the ones
+    that pull most. Of an element two nodes lie on a line, so that what is left of its own matrix,
+    and with it the whole, stays positive definite. For matrices of blocks 3 x 3 and six vectors.
     """
     from .kernels import sweep
 
@@ -80,7 +86,10 @@ def _lines(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _onward(matrix: bsr_array, order: np.ndarray, follows: np.ndarray) -> np.ndarray:
-    """In the order of lines, the block (rows, 3, 3) of every node and the next of its line; zero at a line's end."""
+    """In the order of lines, the block (rows, 3, 3) of every node and the next of its line.
+
+    Zero at a line's end.
+    """
     following = np.full(len(order), -1)
     following[order[:-1]] = np.where(follows[1:], order[1:], -1)
     rows = _rows(matrix)
@@ -90,7 +99,9 @@ def _onward(matrix: bsr_array, order: np.ndarray, follows: np.ndarray) -> np.nda
     return blocks[order]
 
 
-def _factors(diagonal: np.ndarray, onward: np.ndarray, follows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _factors(
+    diagonal: np.ndarray, onward: np.ndarray, follows: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Inverses of the pivots and those times the onward blocks, all lines a step at a time."""
     inverse, carried = np.empty_like(diagonal), np.empty_like(diagonal)
     places = np.flatnonzero(~follows)

@@ -39,8 +39,8 @@ _BYTES = 9000  # a hexahedron needs, measured
 class CompositeModel:
     """A row's composite cell and what it is made of.
 
-    ``fractions`` (elements,) are the yarns' fibre volume fractions, 0 in the matrix, NaN where not known;
-    ``quality`` (elements,) the scaled Jacobian.
+    ``fractions`` (elements,) are the yarns' fibre volume fractions, 0 in the matrix, NaN where not
+    known; ``quality`` (elements,) the scaled Jacobian.
     """
 
     row: Family
@@ -68,22 +68,30 @@ class CompositeStiffness:
 
 
 def composite_model(
-    row: Family, constituents: Constituents, *, mesh: Mapping[str, Any], options: CompositeOptions, stages: Stages
+    row: Family,
+    constituents: Constituents,
+    *,
+    mesh: Mapping[str, Any],
+    options: CompositeOptions,
+    stages: Stages,
 ) -> CompositeModel:
     """The composite of a table of one row.
 
-    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`. Raises :class:`InputError`
-    for what is wrong in the input.
+    ``mesh`` are keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`. Raises
+    :class:`InputError` for what is wrong in the input.
     """
     (name,) = row.names
     sections = fibre_sections(row, constituents)
+
     with stages("identify"):
         solved = identify(row)
         fabric = solved[name]
         used = composite_mesh_options(fabric, **(mesh if "size" in mesh else COARSE | dict(mesh)))
+
     with stages("mesh"):
         cell = mesh_composite(fabric, used, options)
         quality = mesh_quality(cell.mesh).scaled_jacobian
+
     with stages("fibres"):
         fractions = element_fractions(cell.mesh, fabric, sections)
 
@@ -93,8 +101,8 @@ def composite_model(
 def compute_stiffness(model: CompositeModel, *, plate: bool, stages: Stages) -> CompositeStiffness:
     """Homogenise a composite, with ``plate`` as a plate too.
 
-    Raises :class:`InputError` where it would not fit in memory, :class:`SolverError` where the equations are not
-    solved.
+    Raises :class:`InputError` where it would not fit in memory, :class:`SolverError` where the
+    equations are not solved.
     """
     cell, fabric = model.cell, model.fabric
     _refuse_too_large(len(cell.mesh.hexahedra))
@@ -115,7 +123,9 @@ def periodic_mesh(cell: CompositeCell, fabric: SolvedFabric, through: bool = Tru
     height = cell.size[2] * fabric.lattice.axes[2, 2]
     vectors = np.vstack([fabric.lattice.vectors, [0.0, 0.0, height]])
     origin = np.array([0.0, 0.0, -height / 2])
-    return PeriodicMesh(cell.mesh.points, cell.mesh.hexahedra, vectors, origin, (True, True, through))
+    return PeriodicMesh(
+        cell.mesh.points, cell.mesh.hexahedra, vectors, origin, (True, True, through)
+    )
 
 
 def _refuse_too_large(hexahedra: int) -> None:

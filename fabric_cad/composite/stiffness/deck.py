@@ -1,9 +1,9 @@
 """The six load cases of a composite cell as a deck for CalculiX or Abaqus.
 
-The cell is periodic by equations: what a node on a far face moves more than its image is what the cell's edge
-vectors change by, which three reference nodes hold. The mean stress of a step, the stresses at the integration
-points weighted with their volumes over the volume of the cell, is a column of the stiffness. (The reaction at a node
-of equations is printed as 0 by CalculiX.)
+The cell is periodic by equations: what a node on a far face moves more than its image is what the
+cell's edge vectors change by, which three reference nodes hold. The mean stress of a step, the
+stresses at the integration points weighted with their volumes over the volume of the cell, is a
+column of the stiffness. (The reaction at a node of equations is printed as 0 by CalculiX.)
 """
 
 from __future__ import annotations
@@ -57,13 +57,21 @@ def write_stiffness_deck(
 ) -> None:
     """Write six linear steps, a unit of mean strain xx, yy, zz, yz, xz, xy each (engineering shear).
 
-    ``fractions`` (elements,) are the yarns' fibre volume fractions; every different one is a material.
+    ``fractions`` (elements,) are the yarns' fibre volume fractions; every different one is a
+    material.
     """
-    write_keywords(stiffness_keywords(cell, periodic, fractions, constituents, title=title), path, dialect)
+    write_keywords(
+        stiffness_keywords(cell, periodic, fractions, constituents, title=title), path, dialect
+    )
 
 
 def stiffness_keywords(
-    cell: CompositeCell, periodic: PeriodicMesh, fractions: np.ndarray, constituents: Constituents, *, title: str
+    cell: CompositeCell,
+    periodic: PeriodicMesh,
+    fractions: np.ndarray,
+    constituents: Constituents,
+    *,
+    title: str,
 ) -> Iterator[Keyword]:
     """The keywords of :func:`write_stiffness_deck`."""
     mesh = cell.mesh
@@ -79,18 +87,26 @@ def stiffness_keywords(
 
     for load, name in enumerate(COMPONENTS):
         change = periodic.vectors @ tensor_of(np.eye(6)[load])
-        driven = [(int(node), axis, float(row[axis - 1])) for node, row in zip(reference, change) for axis in (1, 2, 3)]
+        driven = [
+            (int(node), axis, float(row[axis - 1]))
+            for node, row in zip(reference, change)
+            for axis in (1, 2, 3)
+        ]
         yield LinearStep(f"mean strain {name} = 1", (Boundary(tuple(driven)), StressOutput(_CELL)))
 
 
 def periodic_equations(periodic: PeriodicMesh, reference: np.ndarray) -> Iterator[Equation]:
     """Three equations a node on a far face: its displacement = its image's + those of the edges between both."""
     slaves, masters = periodic_pairs(periodic)
-    apart = np.rint((periodic.points[slaves] - periodic.points[masters]) @ np.linalg.inv(periodic.vectors)).astype(int)
+    apart = np.rint(
+        (periodic.points[slaves] - periodic.points[masters]) @ np.linalg.inv(periodic.vectors)
+    ).astype(int)
     for slave, master, edges in zip((slaves + 1).tolist(), (masters + 1).tolist(), apart):
         nodes = reference[edges == 1].tolist()
         for axis in (1, 2, 3):
-            yield Equation(((slave, axis, 1.0), (master, axis, -1.0), *((node, axis, -1.0) for node in nodes)))
+            yield Equation(
+                ((slave, axis, 1.0), (master, axis, -1.0), *((node, axis, -1.0) for node in nodes))
+            )
 
 
 def _held(periodic: PeriodicMesh) -> int:
@@ -102,11 +118,16 @@ def _held(periodic: PeriodicMesh) -> int:
 def _materials(
     mesh: Mesh, in_matrix: np.ndarray, fractions: np.ndarray, constituents: Constituents
 ) -> Iterator[Keyword]:
-    """Elements by material: the matrix, and yarns by their fibre fraction; a set of elements for every yarn too."""
+    """Elements by material: the matrix, and yarns by their fibre fraction.
+
+    A set of elements for every yarn too.
+    """
     numbers = np.arange(1, len(mesh.hexahedra) + 1)
     groups = {"matrix": np.flatnonzero(in_matrix)}
     yarn = np.flatnonzero(~in_matrix)
-    distinct, group = np.unique(np.round(fractions[yarn], 12), return_inverse=True)  # NaN: not known, one group
+    distinct, group = np.unique(
+        np.round(fractions[yarn], 12), return_inverse=True
+    )  # NaN: not known, one group
     groups |= {f"yarn_{n + 1}": yarn[group == n] for n in range(len(distinct))}
     for name, elements in groups.items():
         yield Hexahedra(f"{name}_elements", numbers[elements], mesh.hexahedra[elements] + 1)

@@ -1,4 +1,7 @@
-"""What a stiffness says: its report as a value, which is a dict when it is written; its table; its summary."""
+"""What a stiffness says: its report as a value, which is a dict when it is written; its table.
+
+Its summary.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,8 @@ COMPONENTS = ("xx", "yy", "zz", "yz", "xz", "xy")
 class StiffnessReport:
     """The content of ``stiffness.json``; fields are called as its keys, which hold plain numbers, lists and texts.
 
-    6 x 6 matrices are in the order xx yy zz yz xz xy with engineering shear; ``plate`` is None where not asked for.
+    6 x 6 matrices are in the order xx yy zz yz xz xy with engineering shear; ``plate`` is None
+    where not asked for.
     """
 
     row: str
@@ -103,15 +107,20 @@ def _plate(computed: CompositeStiffness) -> dict[str, Any] | None:
 def _yarn(computed: CompositeStiffness) -> dict[str, Any]:
     """What the yarns were taken to be, and where from."""
     constituents = computed.model.constituents
-    given = {key: value for key, value in asdict(constituents.yarn).items() if value not in (None, "")}
+    given = {
+        key: value for key, value in asdict(constituents.yarn).items() if value not in (None, "")
+    }
     given.pop("own_fraction")
     fractions = computed.model.fractions[~computed.model.cell.in_matrix]
     known = not np.isnan(fractions).any()
+
     return {
         "constants_by": f"given: {', '.join(ELASTIC)}" if constituents.yarn.law else METHOD,
         "given": given,
         "fibre": asdict(constituents.fibre) if constituents.fibre else None,
-        "fibre_fraction": {"least": float(fractions.min()), "greatest": float(fractions.max())} if known else None,
+        "fibre_fraction": {"least": float(fractions.min()), "greatest": float(fractions.max())}
+        if known
+        else None,
         "file": constituents.path,
     }
 
@@ -152,7 +161,9 @@ def _warnings(computed: CompositeStiffness) -> list[str]:
     warnings = list(map(str, implausible(row, computed.model.solved.columns)))
     own, fibre = float(row.measured["fibre_density_g_cm3"][0]), constituents.fibre
     if fibre and fibre.density_g_cm3 and abs(own / fibre.density_g_cm3 - 1) > _DENSITIES:
-        told = f"the table gives its fibres {own:g} g/cm3, {constituents.path} {fibre.density_g_cm3:g}"
+        told = (
+            f"the table gives its fibres {own:g} g/cm3, {constituents.path} {fibre.density_g_cm3:g}"
+        )
         warnings.append(f"{row.names[0]}: {told}: are they of one material?")
 
     return warnings

@@ -34,13 +34,14 @@ def make_stiffness(
 ) -> StiffnessReport:
     """Homogenise the composite of a table of one row; its files are in ``out/<row name>``, its report is returned.
 
-    ``families`` is the folder whose ``composite.toml`` holds, where it has one; ``mesh`` are keywords of
-    :func:`~fabric_cad.composite.spacing.composite_mesh_options`; ``options`` say how the matrix fills the box; with
-    ``plate`` the stiffness of the cell as a plate is there too. Raises :class:`FabricCadError`; earlier
-    results are then as they were.
+    ``families`` is the folder whose ``composite.toml`` holds, where it has one; ``mesh`` are
+    keywords of :func:`~fabric_cad.composite.spacing.composite_mesh_options`; ``options`` say how
+    the matrix fills the box; with ``plate`` the stiffness of the cell as a plate is there too.
+    Raises :class:`FabricCadError`; earlier results are then as they were.
     """
     expect_row(row)
     stages = stages or Stages()
+
     with staged(Path(out) / row.names[0], renew_digests) as folder:
         return write_stiffness(
             row,
@@ -70,6 +71,7 @@ def write_stiffness(
     report = stiffness_report(computed, stages.seconds)
     write_table(report, folder / f"{NAME}.csv")
     write_traced(report.content(), folder / f"{NAME}.json")
+
     return report
 
 
@@ -92,6 +94,7 @@ def make_deck(
     expect_row(row)
     (name,) = row.names
     stages = stages or Stages()
+
     with staged(Path(out) / name, renew_digests) as folder:
         constituents = read_constituents(families, name)
         model = composite_model(row, constituents, mesh=mesh or {}, options=options, stages=stages)
@@ -116,8 +119,13 @@ def _write(computed: CompositeStiffness, folder: Path, stages: Stages) -> None:
             from .states import write_states
 
         write_states(computed, folder / f"{NAME}.pvd")
+
     with stages("picture"):
         with uninterrupted():
             from ...pictures.plots import plot_directions, save_figure
 
-        save_figure(plot_directions(computed.effective.stiffness), folder / f"{NAME}.png", computed.model.fabric.name)
+        save_figure(
+            plot_directions(computed.effective.stiffness),
+            folder / f"{NAME}.png",
+            computed.model.fabric.name,
+        )

@@ -38,6 +38,7 @@ def _states(computed: CompositeStiffness) -> Iterator[State]:
     axes = mesh.fibre_axes()
     fluctuations = np.empty((len(mesh.points), 3, 6))
     fluctuations[mesh.hexahedra] = response.fluctuations[response.integrals.corners]
+
     for load, name in enumerate(COMPONENTS):
         strain = mean_strains(response, UNIT_STRAINS, load) * STRAIN
         stress = np.einsum("nij,nj->ni", computed.materials.stiffness, strain)

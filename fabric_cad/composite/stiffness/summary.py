@@ -19,15 +19,23 @@ FIGURES = (
 
 
 def figures(report: StiffnessReport) -> dict[str, float]:
-    """The numbers of a report by their names, for a table of many; those that are not known are not there."""
+    """The numbers of a report by their names, for a table of many.
+
+    Those that are not known are not there.
+    """
     found = dict(report.constants)
     if report.expansion_per_K:
-        found |= {f"expansion_{axis}_per_K": value for axis, value in zip("xyz", report.expansion_per_K)}
+        found |= {
+            f"expansion_{axis}_per_K": value for axis, value in zip("xyz", report.expansion_per_K)
+        }
+
     if report.conductivity_W_per_mK:
         diagonal = np.diag(report.conductivity_W_per_mK).tolist()
         found |= {f"conductivity_{axis}_W_per_mK": value for axis, value in zip("xyz", diagonal)}
+
     known = {"density_g_cm3": report.density_g_cm3}
     known |= {name: report.mesh[name] for name in ("yarn_volume_fraction", "fibre_volume_fraction")}
+
     return found | {name: value for name, value in known.items() if value is not None}
 
 
@@ -36,10 +44,14 @@ def write_table(report: StiffnessReport, path: Path) -> None:
     units = {"E": "MPa", "G": "MPa"}
     lines = [(name, value, units.get(name[0], "")) for name, value in report.constants.items()]
     if report.expansion_per_K:
-        lines += [(f"expansion_{c}", value, "1/K") for c, value in zip(COMPONENTS, report.expansion_per_K)]
+        lines += [
+            (f"expansion_{c}", value, "1/K") for c, value in zip(COMPONENTS, report.expansion_per_K)
+        ]
+
     if report.conductivity_W_per_mK:
         diagonal = np.diag(report.conductivity_W_per_mK)
         lines += [(f"conductivity_{c}", value, "W/(m K)") for c, value in zip(COMPONENTS, diagonal)]
+
     if report.density_g_cm3 is not None:
         lines.append(("density", report.density_g_cm3, "g/cm3"))
     for key in ("yarn_volume_fraction", "fibre_volume_fraction"):
@@ -55,7 +67,11 @@ def write_table(report: StiffnessReport, path: Path) -> None:
 def summary(report: StiffnessReport) -> str:
     """A few lines for a person."""
     c, mesh, solver = report.constants, report.mesh, report.solver
-    fibre = "" if mesh["fibre_volume_fraction"] is None else f", {100 * mesh['fibre_volume_fraction']:.1f} % fibre"
+    fibre = (
+        ""
+        if mesh["fibre_volume_fraction"] is None
+        else f", {100 * mesh['fibre_volume_fraction']:.1f} % fibre"
+    )
     lines = [
         f"{report.row}: {mesh['hexahedra']} hexahedra, {100 * mesh['yarn_volume_fraction']:.1f} % yarns{fibre}",
         f"  moduli          Ex {c['Ex'] / 1e3:.4g}, Ey {c['Ey'] / 1e3:.4g}, Ez {c['Ez'] / 1e3:.4g} GPa",
@@ -65,9 +81,11 @@ def summary(report: StiffnessReport) -> str:
     if report.expansion_per_K:
         x, y, z = (1e6 * value for value in report.expansion_per_K[:3])
         lines.append(f"  expansion       x {x:.3g}, y {y:.3g}, z {z:.3g} 1e-6/K")
+
     if report.conductivity_W_per_mK:
         x, y, z = np.diag(report.conductivity_W_per_mK)
         lines.append(f"  conductivity    x {x:.3g}, y {y:.3g}, z {z:.3g} W/(m K)")
+
     if report.density_g_cm3 is not None:
         lines.append(f"  density         {report.density_g_cm3:.4g} g/cm3")
     if report.plate:
@@ -75,6 +93,10 @@ def summary(report: StiffnessReport) -> str:
         lines.append(
             f"  plate           A11 {a[0][0]:.4g}, A22 {a[1][1]:.4g} N/mm, D11 {d[0][0]:.4g}, D22 {d[1][1]:.4g} N mm"
         )
-    lines.append(f"  solver          {solver['iterations']} iterations, residual {solver['residual']:.1e}")
+
+    lines.append(
+        f"  solver          {solver['iterations']} iterations, residual {solver['residual']:.1e}"
+    )
     lines.append(f"  seconds         {sum(report.seconds.values()):.1f}")
+
     return "\n".join(lines)

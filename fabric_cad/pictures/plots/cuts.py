@@ -76,6 +76,7 @@ def _profile(swept: SweptYarn, height: Callable[[Section], float]) -> tuple[np.n
     """
     places, heights = [], []
     sections = swept.sections
+
     for piece, first, second in zip(swept.trajectory.pieces, sections, sections[1:]):
         along, midline = sample(piece)
         share = (along - along[0]) / (along[-1] - along[0])

@@ -26,7 +26,8 @@ class Section:
 def plot_flow(plan: np.ndarray, flux: np.ndarray, title: str, sections: list[Section]) -> Figure:
     """Streamlines of the ``flux`` (points, 2) through the thickness over ``plan`` (points, 2), mm, and sections.
 
-    Flux is in mm3, speed in mm2, both for a unit pressure gradient over viscosity. Returns the figure.
+    Flux is in mm3, speed in mm2, both for a unit pressure gradient over viscosity. Returns the
+    figure.
     """
     from matplotlib.figure import Figure
     from scipy.interpolate import griddata
@@ -41,12 +42,24 @@ def plot_flow(plan: np.ndarray, flux: np.ndarray, title: str, sections: list[Sec
     size = np.linalg.norm(field, axis=-1)
     image = upper.pcolormesh(*sides, size, shading="gouraud", cmap="viridis", rasterized=True)
     if np.nanmax(size) > 0:
-        upper.streamplot(*sides, field[..., 0], field[..., 1], color="white", linewidth=0.7, density=1.2, arrowsize=0.7)
+        upper.streamplot(
+            *sides,
+            field[..., 0],
+            field[..., 1],
+            color="white",
+            linewidth=0.7,
+            density=1.2,
+            arrowsize=0.7,
+        )
+
     figure.colorbar(image, ax=upper, label="flux through the thickness, mm3")
     upper.set(xlim=sides[0][[0, -1]], ylim=sides[1][[0, -1]])
     _label(upper, title, ("x mm", "y mm"))
+
     for ax, section in zip(others, sections):
-        image = ax.tripcolor(*section.points.T, section.triangles, section.speed, shading="gouraud", rasterized=True)
+        image = ax.tripcolor(
+            *section.points.T, section.triangles, section.speed, shading="gouraud", rasterized=True
+        )
         figure.colorbar(image, ax=ax, label="speed, mm2")
         _label(ax, section.title, ("mm", "z mm"))
 

@@ -53,6 +53,7 @@ def plot_tension_curves(columns: Mapping[str, Sequence[float]], axes: Any = None
     )
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
+
     return figure
 
 

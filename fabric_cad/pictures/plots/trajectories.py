@@ -31,6 +31,7 @@ def plot_trajectory(fabric: SolvedFabric, axes: Axes, direction: str = "weft") -
     low_first = sign > 0
     p_first = solved.p_low if low_first else solved.p_high
     p_last = solved.p_high if low_first else solved.p_low
+
     for start, end, (vertex, level), p in (
         (x2, x3, (x2, z2), sign * p_first),
         (x4, x5, (x5, z5), -sign * p_last),

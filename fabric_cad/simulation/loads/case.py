@@ -38,8 +38,8 @@ CONDITION = (
 class Line:
     """A line of a case's table before its results: which of the states it shows.
 
-    ``number`` counts the states from 0, the one at rest included where there is one; ``time`` is the
-    line's in the series for ParaView; ``columns`` name the state and come first.
+    ``number`` counts the states from 0, the one at rest included where there is one; ``time`` is
+    the line's in the series for ParaView; ``columns`` name the state and come first.
     """
 
     number: int
@@ -50,10 +50,11 @@ class Line:
 class LoadCase(ABC, Generic[State]):
     """A load case as ``simulation.toml`` sets it: a frozen dataclass whose fields are the keys of its table.
 
-    ``name`` is that of the command, of the table of settings, and the stem of every file; ``text`` is what
-    the command's help says; ``checks`` tell what each key may hold. A field with a default needs no
-    value in the shipped file. With ``is_studied`` the case is a depth of studies, whose usual
-    figures ``headline`` are. A state is whatever the case tells its loads by: strains, an angle.
+    ``name`` is that of the command, of the table of settings, and the stem of every file; ``text``
+    is what the command's help says; ``checks`` tell what each key may hold. A field with a default
+    needs no value in the shipped file. With ``is_studied`` the case is a depth of studies, whose
+    usual figures ``headline`` are. A state is whatever the case tells its loads by: strains, an
+    angle.
     """
 
     name: ClassVar[str]
@@ -71,12 +72,18 @@ class LoadCase(ABC, Generic[State]):
         """How a state changes the periods that the cell has at rest."""
 
     def at_rest(self) -> State | None:
-        """The state that stands for rest and comes before those computed; None where the table does not have it."""
+        """The state that stands for rest and comes before those computed.
+
+        None where the table does not have it.
+        """
         return None
 
     @abstractmethod
     def lines(self, states: Sequence[State]) -> Sequence[Line]:
-        """The lines of the table of the states that there are, in its order; a state may come twice."""
+        """The lines of the table of the states that there are, in its order.
+
+        A state may come twice.
+        """
 
     @abstractmethod
     def measures(self, state: State, deformed: Deformed) -> dict[str, float]:

@@ -31,7 +31,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ShearCase(LoadCase[float]):
-    """Trellis shear to an angle (degrees) after a strain of both directions; a state is its angle, degrees."""
+    """Trellis shear to an angle (degrees) after a strain of both directions.
+
+    A state is its angle, degrees.
+    """
 
     angle_deg: float
     points: int
@@ -75,7 +78,8 @@ class ShearCase(LoadCase[float]):
         pulls = (forces * vectors).sum(axis=1) / np.linalg.norm(vectors, axis=1)
         return {
             "moment_N_mm": couple,
-            "force_N_per_mm": couple / float(np.prod(np.linalg.norm(deformed.lattice.vectors, axis=1))),
+            "force_N_per_mm": couple
+            / float(np.prod(np.linalg.norm(deformed.lattice.vectors, axis=1))),
             **tension_per_yarn(deformed.mesh, pulls),
             "thickness_mm": thickness(deformed.points),
         }
@@ -98,9 +102,13 @@ class ShearCase(LoadCase[float]):
         """``valid_up_to_deg`` and ``largest``, the last line."""
         from ..report import plain
 
-        angles, depths = ([row[column] for row in table.rows] for column in ("angle_deg", "penetration_mm"))
+        angles, depths = (
+            [row[column] for row in table.rows] for column in ("angle_deg", "penetration_mm")
+        )
         return {
-            "valid_up_to_deg": valid_until(angles, depths, run.penetration_bound) if angles else 0.0,
+            "valid_up_to_deg": valid_until(angles, depths, run.penetration_bound)
+            if angles
+            else 0.0,
             "largest": plain(table.rows[-1]) if table.rows else None,
         }
 
@@ -128,7 +136,9 @@ def cell_vectors(rest: np.ndarray, angle: float, strain: float = 0.0) -> np.ndar
 def moment(rest: np.ndarray, angle: float, strain: float, forces: np.ndarray) -> float:
     """Moment (N mm) of a cell: work of the ends' ``forces`` (2, 3), N, per radian of shear."""
     half = math.radians(angle) / 2
-    turning = _turned(rest, -math.sin(half), math.cos(half)) / 2  # the vectors' derivative by the angle
+    turning = (
+        _turned(rest, -math.sin(half), math.cos(half)) / 2
+    )  # the vectors' derivative by the angle
     return float(((1 + strain) * turning * forces).sum())
 
 

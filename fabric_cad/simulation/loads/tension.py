@@ -60,7 +60,9 @@ class TensionCase(LoadCase[Strains]):
     grid: int
 
     name: ClassVar[str] = "tension"
-    text: ClassVar[str] = "stretch a row's cell biaxially with CalculiX: curves and surfaces of tension"
+    text: ClassVar[str] = (
+        "stretch a row's cell biaxially with CalculiX: curves and surfaces of tension"
+    )
     checks: ClassVar[Mapping[str, Check]] = MappingProxyType(
         {
             "strain": (float, lambda strain: 0 < strain <= 0.1, "is not above 0 and up to 0.1"),
@@ -82,10 +84,15 @@ class TensionCase(LoadCase[Strains]):
     def paths(self, contact: ContactLaw) -> Sequence[Sequence[Strains]]:
         """Every state to compute, as few paths as the contact allows; each starts from rest.
 
-        Without friction a state does not depend on how it was reached, and one path winds through all
-        of them. With friction a curve is a path of its own, and a row of the grid (one E22) another.
+        Without friction a state does not depend on how it was reached, and one path winds through
+        all of them. With friction a curve is a path of its own, and a row of the grid (one E22)
+        another.
         """
-        levels = [self.strain * step / (self.grid - 1) for step in range(self.grid)] if self.grid > 1 else []
+        levels = (
+            [self.strain * step / (self.grid - 1) for step in range(self.grid)]
+            if self.grid > 1
+            else []
+        )
         rays = [curve.states for curve in curves(self)]
         if contact.friction:
             rows = [tuple((weft, warp) for weft in levels if weft or warp) for warp in levels]
@@ -96,19 +103,29 @@ class TensionCase(LoadCase[Strains]):
 
     def load(self, state: Strains, lattice: Lattice) -> Load:
         """The cell's periods longer by E11 and E22."""
-        return Load.of(f"E11 = {state[0]:.6g}, E22 = {state[1]:.6g}", np.array(state)[:, None] * lattice.vectors)
+        return Load.of(
+            f"E11 = {state[0]:.6g}, E22 = {state[1]:.6g}",
+            np.array(state)[:, None] * lattice.vectors,
+        )
 
     def at_rest(self) -> Strains:
         """No strain."""
         return 0.0, 0.0
 
     def lines(self, states: Sequence[Strains]) -> Sequence[Line]:
-        """States on no curve with k NaN, then those of every curve with its k; one on two curves comes twice."""
+        """States on no curve with k NaN, then those of every curve with its k.
+
+        One on two curves comes twice.
+        """
         on_curves = [
             (number, curve.ratio)
             for curve in curves(self)
             for wanted in curve.states
-            if (number := next((n for n, state in enumerate(states) if math.dist(wanted, state) <= _SAME), None))
+            if (
+                number := next(
+                    (n for n, state in enumerate(states) if math.dist(wanted, state) <= _SAME), None
+                )
+            )
             is not None
         ]
         used = {number for number, _ in on_curves}
@@ -124,13 +141,19 @@ class TensionCase(LoadCase[Strains]):
         mesh, forces = deformed.mesh, deformed.reached.forces
         pulls = np.array([forces[0, 0], forces[1, 1]])
         length, width = np.linalg.norm(deformed.lattice.vectors, axis=1)
-        before, after = ((thickness(points), *widths(mesh, points)) for points in (mesh.points, deformed.points))
+        before, after = (
+            (thickness(points), *widths(mesh, points)) for points in (mesh.points, deformed.points)
+        )
+
         return {
             **tension_per_yarn(mesh, pulls),
             "T11_N_per_mm": pulls[0] / width,
             "T22_N_per_mm": pulls[1] / length,
             **{f"{name}_mm": value for name, value in zip(_SIZES, after)},
-            **{f"{name}_change_percent": 100 * (new / old - 1) for name, new, old in zip(_SIZES, after, before)},
+            **{
+                f"{name}_change_percent": 100 * (new / old - 1)
+                for name, new, old in zip(_SIZES, after, before)
+            },
         }
 
     def label(self, row: Mapping[str, float]) -> str:
@@ -142,12 +165,16 @@ class TensionCase(LoadCase[Strains]):
         """Curves, the surface where the states span one, and the valid state of the largest strains."""
         from ..pictures import draw_crushing, draw_state
 
-        loaded = [line for line in table.valid if table.rows[line]["E11"] or table.rows[line]["E22"]]
+        loaded = [
+            line for line in table.valid if table.rows[line]["E11"] or table.rows[line]["E22"]
+        ]
         if not loaded:
             return
 
         _draw_curves(run, table)
-        largest = max(loaded, key=lambda line: sorted((table.rows[line]["E11"], table.rows[line]["E22"])))
+        largest = max(
+            loaded, key=lambda line: sorted((table.rows[line]["E11"], table.rows[line]["E22"]))
+        )
         draw_state(run, table.reached[largest], table.labels[largest])
         draw_crushing(run, table.reached[largest], table.labels[largest])
 
@@ -160,7 +187,9 @@ class TensionCase(LoadCase[Strains]):
 
     def summary(self, report: CaseReport) -> list[str]:
         """The end of every curve."""
-        lines = [f"  {'k':>6}{'E11 %':>9}{'E22 %':>9}{'T11 N per yarn':>16}{'T22 N per yarn':>16}{'thickness %':>13}"]
+        lines = [
+            f"  {'k':>6}{'E11 %':>9}{'E22 %':>9}{'T11 N per yarn':>16}{'T22 N per yarn':>16}{'thickness %':>13}"
+        ]
         for end in report.findings["largest"]:
             lines.append(
                 f"  {end['k']!s:>6}{100 * end['E11']:9.3g}{100 * end['E22']:9.3g}{end['T11_N_per_yarn']:16.5g}"
@@ -207,7 +236,11 @@ def _winding(states: Sequence[Strains]) -> tuple[Strains, ...]:
         else:
             columns.append([state])
 
-    return tuple(state for number, column in enumerate(columns) for state in (column[::-1] if number % 2 else column))
+    return tuple(
+        state
+        for number, column in enumerate(columns)
+        for state in (column[::-1] if number % 2 else column)
+    )
 
 
 def _draw_curves(run: CaseRun, table: CaseTable) -> None:
@@ -218,5 +251,9 @@ def _draw_curves(run: CaseRun, table: CaseTable) -> None:
     columns |= {name: columns[f"{name}_N_per_yarn"] for name in ("T11", "T22")}
     with run.stages("curves"):
         save_figure(plot_tension_curves(columns), run.path("_curves.png"), run.cell.fabric.name)
-        if np.linalg.matrix_rank(np.array([columns["E11"], columns["E22"]]), tol=1e-9) == 2:  # rest is among them
-            save_figure(plot_tension_surface(columns), run.path("_surface.png"), run.cell.fabric.name)
+        if (
+            np.linalg.matrix_rank(np.array([columns["E11"], columns["E22"]]), tol=1e-9) == 2
+        ):  # rest is among them
+            save_figure(
+                plot_tension_surface(columns), run.path("_surface.png"), run.cell.fabric.name
+            )

@@ -25,7 +25,10 @@ class Increment:
 
 
 def read_sta(path: str | Path) -> tuple[Increment, ...]:
-    """Every attempt listed in a ``.sta`` file, also one still being written; none where there is no file."""
+    """Every attempt listed in a ``.sta`` file, also one still being written.
+
+    None where there is no file.
+    """
     try:
         text = Path(path).read_text(encoding="ascii", errors="replace")
     except FileNotFoundError:
@@ -37,4 +40,11 @@ def read_sta(path: str | Path) -> tuple[Increment, ...]:
 def _attempt(row: list[str]) -> Increment:
     """A row of .sta; the attempts that failed carry a U."""
     step, increment, iterations = int(row[0]), int(row[1]), int(row[3])
-    return Increment(step, increment, int(row[2].rstrip("U")), iterations, "U" not in row[2], *map(float, row[4:]))
+    return Increment(
+        step,
+        increment,
+        int(row[2].rstrip("U")),
+        iterations,
+        "U" not in row[2],
+        *map(float, row[4:]),
+    )

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-_TITLE = re.compile(r"^ (\S.*?) for (?:set (\S+) and |slave set (\S+), master set (\S+) and )?time +(\S+)\s*$")
+_TITLE = re.compile(
+    r"^ (\S.*?) for (?:set (\S+) and |slave set (\S+), master set (\S+) and )?time +(\S+)\s*$"
+)
 _QUANTITIES = {
     "total force (fx,fy,fz)": "RF",
     "forces (fx,fy,fz)": "RF",
@@ -28,11 +30,12 @@ _SIZES = {"CF": 18}
 class Printed:
     """One print request at one increment.
 
-    ``quantity`` is the key asked for where this module knows its title (RF, U, ELSE, EVOL, CELS, CNUM, CF),
-    else the title as printed. ``name`` is the set in upper case (as ccx keeps it), "" without a set,
-    ``SLAVE/MASTER`` for CF. ``time`` is the total time. ``values``: of a sum (``TOTALS=ONLY``) the row of
-    numbers, (3,) for RF, (1,) for ELSE, EVOL, CELS, CNUM; of a listing (rows, 1 + components), the node
-    or element number first; of CF (18,), see :data:`CONTACT_FORCE`.
+    ``quantity`` is the key asked for where this module knows its title (RF, U, ELSE, EVOL, CELS,
+    CNUM, CF), else the title as printed. ``name`` is the set in upper case (as ccx keeps it), ""
+    without a set, ``SLAVE/MASTER`` for CF. ``time`` is the total time. ``values``: of a sum
+    (``TOTALS=ONLY``) the row of numbers, (3,) for RF, (1,) for ELSE, EVOL, CELS, CNUM; of a listing
+    (rows, 1 + components), the node or element number first; of CF (18,), see
+    :data:`CONTACT_FORCE`.
     """
 
     quantity: str
@@ -51,7 +54,10 @@ CONTACT_FORCE = {
     "normal force": 16,
     "shear force": 17,
 }
-"""Where CF has what: force on the slave surface, its centre of gravity and mean outward normal; tension positive."""
+"""Where CF has what: force on the slave surface, its centre of gravity and mean outward normal.
+
+Tension positive.
+"""
 
 
 def read_dat(path: str | Path) -> tuple[Printed, ...]:
@@ -63,12 +69,14 @@ def read_dat(path: str | Path) -> tuple[Printed, ...]:
     found: list[Printed] = []
     title: re.Match | None = None
     rows: list[list[float]] = []
+
     for line in text[: text.rfind("\n") + 1].splitlines():
         if match := _TITLE.match(line):
             found += _printed(title, rows)
             title, rows = match, []
         elif title and (row := _numbers(line)):
             rows.append(row)
+
     return tuple(found + _printed(title, rows))
 
 

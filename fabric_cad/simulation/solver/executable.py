@@ -35,5 +35,7 @@ def _numbered() -> list[str]:
     """Names like ccx_2.21 or ccx_2.22_MT on the PATH, newest first."""
     folders = [Path(folder) for folder in os.environ.get("PATH", "").split(os.pathsep) if folder]
     names = {path.name for folder in folders for path in folder.glob("ccx_2.*")}
-    versions = {name: match[1] for name in names if (match := re.fullmatch(r"ccx_2\.(\d+)\w*", name))}
+    versions = {
+        name: match[1] for name in names if (match := re.fullmatch(r"ccx_2\.(\d+)\w*", name))
+    }
     return sorted(versions, key=lambda name: (-int(versions[name]), name))

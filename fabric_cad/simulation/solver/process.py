@@ -17,7 +17,12 @@ from pathlib import Path
 from ...support.errors import SolverError
 from ...support.working import lock_of
 
-_THREADS = ("OMP_NUM_THREADS", "CCX_NPROC_STIFFNESS", "CCX_NPROC_RESULTS", "CCX_NPROC_EQUATION_SOLVER")
+_THREADS = (
+    "OMP_NUM_THREADS",
+    "CCX_NPROC_STIFFNESS",
+    "CCX_NPROC_RESULTS",
+    "CCX_NPROC_EQUATION_SOLVER",
+)
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
 POLL = 0.1
 """Seconds between two looks at the process and its ``.sta`` file."""
@@ -30,7 +35,8 @@ class Child:
         self.status: int | None = None
         self.killed = ""
         self.peak = 0
-        # ccx prints from C and from Fortran, each with a buffer of its own: neither may hold it back
+        # ccx prints from C and from Fortran, each with a buffer of its own: neither may hold it
+        # back
         command = [os.fspath(solver), "-i", deck.stem]
         if stdbuf := shutil.which("stdbuf"):
             command = [stdbuf, "-oL", *command]
@@ -70,7 +76,10 @@ class Child:
                 self.process.kill()
 
     def ended(self, wait: float) -> bool:
-        """Whether it is over, waited for at most ``wait`` seconds; reads its peak memory meanwhile."""
+        """Whether it is over, waited for at most ``wait`` seconds.
+
+        Reads its peak memory meanwhile.
+        """
         until, pause = time.monotonic() + wait, 0.002
         while True:
             self.peak = max(self.peak, _high_water(self.process.pid))
@@ -89,7 +98,8 @@ class Child:
         pid, status, usage = os.wait4(self.process.pid, os.WNOHANG)
         if pid:
             self.status = self.process.returncode = os.waitstatus_to_exitcode(status)
-            # what wait4 says counts the parent's memory at the fork: only where there is nothing better
+            # what wait4 says counts the parent's memory at the fork: only where there is nothing
+            # better
             self.peak = self.peak or usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
         return bool(pid)
 
@@ -122,6 +132,8 @@ def _high_water(pid: int) -> int:
     """Peak resident memory of a running process in bytes, 0 where the system does not say."""
     try:
         with open(f"/proc/{pid}/status", encoding="ascii", errors="replace") as status:
-            return next((int(line.split()[1]) * 1024 for line in status if line.startswith("VmHWM:")), 0)
+            return next(
+                (int(line.split()[1]) * 1024 for line in status if line.startswith("VmHWM:")), 0
+            )
     except OSError:
         return 0

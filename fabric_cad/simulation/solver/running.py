@@ -21,8 +21,8 @@ _OUTPUTS = (".log", ".sta", ".cvg", ".dat", ".frd", ".12d")
 class Progress:
     """Where a running job is: the increment just converged.
 
-    ``step`` of ``steps`` and ``increment`` count from 1; ``step_time`` and ``total_time`` are the deck's;
-    ``load`` is the share of the step reached, 0 to 1.
+    ``step`` of ``steps`` and ``increment`` count from 1; ``step_time`` and ``total_time`` are the
+    deck's; ``load`` is the share of the step reached, 0 to 1.
     """
 
     step: int
@@ -44,15 +44,16 @@ def run_solver(
 ) -> Run:
     """Run ccx on a deck in the deck's folder and wait for it.
 
-    Everything it prints goes to ``<stem>.log`` as it comes; output of an earlier run is removed first.
-    ``time_limit`` in seconds of wall clock. ``listen`` is called at every increment that converges. Past
-    the limit, when ``stop`` is set (the way to end runs in threads of a pool, which Ctrl-C does not
-    reach), or on any exception (Ctrl-C, one raised by ``listen``), the process and its children are
-    killed; an exception goes on to the caller. SIGTERM ends Python without one, unless the caller makes
-    it one (:func:`fabric_cad.support.interrupts.stoppable`). On Linux ccx ends also where Python is killed outright,
-    or the thread ends that called this; elsewhere it then runs on, and holds the lock of the working folder
-    its deck is in. The steps are looked for in the deck itself, not in files it includes.
-    Raises InputError for a deck that is not there or not an .inp, SolverError where ccx cannot be started.
+    Everything it prints goes to ``<stem>.log`` as it comes; output of an earlier run is removed
+    first. ``time_limit`` in seconds of wall clock. ``listen`` is called at every increment that
+    converges. Past the limit, when ``stop`` is set (the way to end runs in threads of a pool, which
+    Ctrl-C does not reach), or on any exception (Ctrl-C, one raised by ``listen``), the process and
+    its children are killed; an exception goes on to the caller. SIGTERM ends Python without one,
+    unless the caller makes it one (:func:`fabric_cad.support.interrupts.stoppable`). On Linux ccx
+    ends also where Python is killed outright, or the thread ends that called this; elsewhere it
+    then runs on, and holds the lock of the working folder its deck is in. The steps are looked for
+    in the deck itself, not in files it includes. Raises InputError for a deck that is not there or
+    not an .inp, SolverError where ccx cannot be started.
     """
     deck = Path(deck).resolve()
     if deck.suffix != ".inp" or not deck.is_file():
@@ -69,12 +70,16 @@ def run_solver(
                 child.kill("stopped on request")
             elif time.monotonic() - started > time_limit:
                 child.kill(f"stopped at the time limit of {time_limit:g} s")
+
     seconds = time.monotonic() - started
     _tell(deck, periods, told, listen)
+
     return verdict(deck, child, periods, seconds)
 
 
-def _tell(deck: Path, periods: tuple[float, ...], told: int, listen: Callable[[Progress], None] | None) -> int:
+def _tell(
+    deck: Path, periods: tuple[float, ...], told: int, listen: Callable[[Progress], None] | None
+) -> int:
     """Pass on the increments converged since; how many there are now."""
     if listen is None:
         return 0

@@ -19,10 +19,10 @@ class Run:
     """What became of a job.
 
     ``reason`` is "finished" or why it is not, with the step and the share of its load reached;
-    ``increments`` the converged ones, which stay readable in ``.frd`` and ``.dat`` when the job failed
-    (killed, it may lack the last); ``cutbacks`` the attempts that failed; ``warnings`` ccx's own, one of
-    each kind; ``seconds`` of wall clock;
-    ``peak_memory`` in bytes, 0 where the system does not say; ``version`` ccx's, e.g. "2.20", "" if it did not say.
+    ``increments`` the converged ones, which stay readable in ``.frd`` and ``.dat`` when the job
+    failed (killed, it may lack the last); ``cutbacks`` the attempts that failed; ``warnings`` ccx's
+    own, one of each kind; ``seconds`` of wall clock; ``peak_memory`` in bytes, 0 where the system
+    does not say; ``version`` ccx's, e.g. "2.20", "" if it did not say.
     """
 
     finished: bool
@@ -42,6 +42,7 @@ def verdict(deck: Path, child: Child, periods: tuple[float, ...], seconds: float
     failure = _failure(child, log, _place(attempts, periods), bool(attempts))
     done = converged(attempts)
     version = re.search(r"CalculiX Version (\S+?),", log)
+
     return Run(
         finished=not failure,
         reason=failure or "finished",
@@ -80,15 +81,24 @@ def _place(attempts: tuple[Increment, ...], periods: tuple[float, ...]) -> str:
     if attempts:
         step = attempts[-1].step
         load = max(
-            (share_of_step(attempt, periods) for attempt in converged(attempts) if attempt.step == step), default=0.0
+            (
+                share_of_step(attempt, periods)
+                for attempt in converged(attempts)
+                if attempt.step == step
+            ),
+            default=0.0,
         )
         if load > 1 - 1e-6 and step < len(periods):
             step, load = step + 1, 0.0
+
     return f"in step {step} at {100 * load:.3g} % of its load"
 
 
 def _messages(log: str, kind: str) -> tuple[str, ...]:
-    """ccx's ``*ERROR`` or ``*WARNING`` messages, each on one line; those that differ only in numbers count once."""
+    """ccx's ``*ERROR`` or ``*WARNING`` messages, each on one line.
+
+    Those that differ only in numbers count once.
+    """
     found: dict[str, str] = {}
     for match in re.finditer(rf"^ *\*{kind}\b.*(?:\n {{6,}}\S.*)*", log, re.MULTILINE):
         text = " ".join(match[0].split())
