@@ -16,6 +16,7 @@ DOORS = {
     "gmsh": {"meshing/gmsh_session.py"},
     "pyvista": {"support/vtk.py"},
     "vtkmodules": {"support/vtk.py"},
+    "skfem": {"support/scikit_fem.py"},
     "dask": {"study/engine.py"},
     "distributed": {"study/engine.py"},
     "pyarrow": {"study/table.py"},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ..model.solved import SolvedDirection, SolvedFabric, point_columns
@@ -13,6 +14,18 @@ from .figures import MeshFigures, Volumes
 
 if TYPE_CHECKING:
     from ..cad import Consistency
+
+
+CONSISTENCY: Mapping[str, str] = MappingProxyType(
+    {
+        "max_penetration_mm": "max_penetration",
+        "max_contact_gap_mm": "max_contact_gap",
+        "overlap_volume_mm3": "overlap_volume",
+        "contact_area_mm2": "contact_area",
+        "thickness_mm": "thickness",
+    }
+)
+"""Keys of the report, and what :class:`fabric_cad.cad.Consistency` calls the same."""
 
 
 @dataclass(frozen=True)
@@ -94,13 +107,7 @@ class CellReport:
             "measured_vs_model": [
                 compared.content() for compared in self.identification.comparisons
             ],
-            "consistency": {
-                "max_penetration_mm": found.max_penetration,
-                "max_contact_gap_mm": found.max_contact_gap,
-                "overlap_volume_mm3": found.overlap_volume,
-                "contact_area_mm2": found.contact_area,
-                "thickness_mm": found.thickness,
-            },
+            "consistency": {key: getattr(found, name) for key, name in CONSISTENCY.items()},
             "volumes": self.volumes.content(),
             **({} if self.mesh is None else {"mesh": self.mesh.content()}),
             "seconds": dict(self.seconds),

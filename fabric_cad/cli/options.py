@@ -137,3 +137,8 @@ def declare_mesh(parser: argparse.ArgumentParser, default: str | None = None) ->
             metavar=argument.metavar,
             help=argument.text + own,
         )
+
+
+def declare_deck(parser: argparse.ArgumentParser, text: str, default: str | None = None) -> None:
+    """Add the argument for the dialect of a deck, one of :data:`fabric_cad.decks.keywords.DIALECTS`."""
+    parser.add_argument("--deck", choices=("calculix", "abaqus"), default=default, help=text)

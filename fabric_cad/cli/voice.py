@@ -50,8 +50,14 @@ class Voice:
         for path in paths:
             self.summary(f"  {path}")
 
+    def written(self, text: str, paths: Iterable[Path]) -> None:
+        """What a row's files hold and where they are, before anything is said of the next row."""
+        self.summary(text)
+        self.files(paths)
+        self.flush()
+
     def flush(self) -> None:
-        """Let a reader of standard output have what was said of a row before the next one."""
+        """Let a reader of standard output have what was said so far."""
         if not self.quiet:
             sys.stdout.flush()
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..meshing.mesh import Mesh
 from ..weave.bodies import Body, BodyKind
+from ..weave.lattice import Lattice
 
 BOX_FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 """The faces of the box, as files call them."""
@@ -37,6 +38,12 @@ class CompositeCell:
     margin: float
     shift: float
     closed_wedge: float
+
+    def repeats(self, lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
+        """The box's edges as vectors of space, (3, 3), and the corner (3,) they start from, mm."""
+        height = self.size[2] * lattice.axes[2, 2]
+        vectors = np.vstack([lattice.vectors, [0.0, 0.0, height]])
+        return vectors, np.array([0.0, 0.0, -height / 2])
 
     @property
     def in_matrix(self) -> np.ndarray:

@@ -91,9 +91,8 @@ def fibre_fractions(
 
 
 def _fractions(swept: SweptYarn, area: float, places: np.ndarray) -> np.ndarray:
-    distinct, number = np.unique(
-        np.round(places, 9), return_inverse=True
-    )  # a mesh's elements stand in rows
+    # a mesh's elements stand in rows
+    distinct, number = np.unique(np.round(places, 9), return_inverse=True)
     return (area / section_areas(swept, distinct) * np.sqrt(1 + slopes(swept, distinct) ** 2))[
         number
     ]

@@ -104,10 +104,7 @@ def _lines(plans: Sequence[Plan], strips: Sequence[Strip]) -> tuple[Lines, Lines
 
 
 def _placed(yarns: Mesh, fabric: SolvedFabric, plans: Sequence[Plan]) -> tuple[np.ndarray, float]:
-    """The yarns' nodes in woven coordinates, centred, their ends exactly on the box.
-
-    And how far they were moved up.
-    """
+    """The yarns' nodes, woven and centred, ends exactly on the box; how far they were moved up."""
     points = fabric.lattice.to_woven(yarns.points).copy()
     for plan in plans:
         axis = plan.along_axis

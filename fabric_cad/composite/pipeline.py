@@ -72,16 +72,12 @@ def make_composite(
 
         volumes = _write_step(fabric, cell, folder / f"{NAME}.step", stages)
 
-        report = composite_report(fabric, options, cell, written, figures) | solids_report(
-            volumes, cell
-        )
+        report = composite_report(fabric, options, cell, written, figures)
+        report |= solids_report(volumes, cell)
         report["seconds"] = {stage: round(seconds, 4) for stage, seconds in stages.seconds.items()}
         report |= trace(row, fineness)
-        report["warnings"] = [
-            *map(str, implausible(row, table.columns)),
-            *warnings,
-            *doubts(report),
-        ]
+        told = [*map(str, implausible(row, table.columns)), *warnings, *doubts(report)]
+        report["warnings"] = told
         write_traced(report, folder / f"{NAME}.json")
 
     return report

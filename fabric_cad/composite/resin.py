@@ -104,9 +104,8 @@ def lay_resin(
     for sheet, other in ((lower, upper), (upper, lower)):
         alone = np.flatnonzero((sheet[:, -1] < 0) & (other[:, -1] >= 0))
         sheet[alone, -1] = other[alone, -1]
-        places = nodes.points[
-            other[alone]
-        ]  # the strip's height over them falls to the apex: the two never cross
+        # the strip's height over them falls to the apex: the two never cross
+        places = nodes.points[other[alone]]
         height = nodes.points[sheet[alone, :1]] - places[:, :1]
         sheet[alone, 1:-1] = nodes.add((places + (1 - share) * height)[:, 1:-1])
 

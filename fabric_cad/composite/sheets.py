@@ -39,10 +39,7 @@ class Sheets:
         return cls(np.full((x.count, y.count), -1), np.full((x.count, y.count), -1))
 
     def along(self, direction: Direction) -> Sheets:
-        """The same numbers as (lines along, lines across) a direction.
-
-        Writing to them writes to these.
-        """
+        """The same numbers as (lines along, lines across) a direction: a view of them."""
         return self if direction is Direction.WEFT else Sheets(self.low.T, self.high.T)
 
 

@@ -76,9 +76,8 @@ class Voxels:
 
         image.field_data["yarn_names"] = [yarn.name for yarn in self.yarns]
 
-        Path(path).write_bytes(
-            b""
-        )  # raises where there is no writing at all, which VTK does not tell
+        # raises where there is no writing at all, which VTK does not tell
+        Path(path).write_bytes(b"")
         writer = image_writer()
         writer.SetInputData(image)
         writer.SetFileName(str(path))

@@ -1,7 +1,4 @@
-"""The dry cell as keywords: nodes, C3D8, sets, surfaces, fibre orientation.
-
-No material, no step.
-"""
+"""The dry cell as keywords: mesh, sets, surfaces, fibre orientation; no material, no step."""
 
 from __future__ import annotations
 

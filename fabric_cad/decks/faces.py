@@ -47,9 +47,8 @@ def element_faces(mesh: Mesh) -> dict[Surface, Faces]:
     """
     count = len(mesh.bodies)
     every = _faces_on(mesh, mesh.surfaces.values())
-    keys = (
-        _keys(mesh, every) * count + mesh.body[every.elements]
-    )  # bodies that are bonded share faces
+    # bodies that are bonded share faces
+    keys = _keys(mesh, every) * count + mesh.body[every.elements]
     wanted = {
         surface: _face_keys(quads, len(mesh.points)) * count + mesh.bodies.index(surface.body)
         for surface, quads in mesh.surfaces.items()

@@ -9,8 +9,7 @@ import numpy as np
 from ..composite.cell import CompositeCell
 from ..composite.matrix import mesh_composite
 from ..model.solved import SolvedFabric
-from ..support.errors import InputError, Problem
-from ..support.memory import available_memory
+from ..support.memory import refuse_beyond_memory
 from .connections import open_directions
 from .equations import Equations, assemble
 from .fineness import Fineness
@@ -56,7 +55,8 @@ def cell_flow(
     """
     cell = mesh_composite(fabric, fineness.yarns, fineness.box)
     rigid = pores is None
-    _refuse_too_large(int(np.count_nonzero(cell.in_matrix)) if rigid else len(cell.mesh.hexahedra))
+    hexahedra = int(np.count_nonzero(cell.in_matrix)) if rigid else len(cell.mesh.hexahedra)
+    refuse_beyond_memory(hexahedra, _BYTES * hexahedra)
     mesh = space_between(cell, fabric, top) if rigid else whole_space(cell, fabric, top)
     equations = assemble(
         mesh, held(mesh, top), None if pores is None else pores.resistance(cell, fabric)
@@ -64,10 +64,3 @@ def cell_flow(
     flow = stokes_flow(equations, open_directions(mesh), mesh.mesh.volume)
 
     return CellFlow(fabric, fineness, cell, top, mesh, equations, flow, pores)
-
-
-def _refuse_too_large(hexahedra: int) -> None:
-    needed, available = _BYTES * hexahedra, available_memory()
-    if available is not None and needed > available:
-        message = f"{hexahedra} hexahedra need some {needed / 1e9:.1f} GB, {available / 1e9:.1f} GB are there"
-        raise InputError(Problem(message, column="across"))

@@ -62,58 +62,65 @@ def assemble(
     np.logical_or.at(held, mesh.unknowns, fixed)
     number = np.where(held.all(axis=1), -1, np.cumsum(~held.all(axis=1)) - 1)
     node = number[mesh.unknowns]
-    corners = np.unique(mesh.unknowns[: len(mesh.mesh.points)], return_inverse=True)[1]
-    count, corner_count = int(node.max()) + 1, int(corners.max()) + 1
+    corner = np.unique(mesh.unknowns[: len(mesh.mesh.points)], return_inverse=True)[1]
+    count, corner_count = int(node.max()) + 1, int(corner.max()) + 1
 
-    laplacian = csr_array((count, count))
-    divergence = csr_array((corner_count, 3 * count))
-    weights, masses, volumes = (
-        np.zeros(count + 1),
-        np.zeros(corner_count),
-        np.empty(len(mesh.nodes)),
-    )
+    sums = _Sums(len(mesh.nodes), count, corner_count)
     porous = _Porous(mesh, resistance, (count, corner_count))
-
     for chunk in mesh.chunks():
         own = node[mesh.nodes[chunk.elements]]
-        ends = corners[mesh.nodes[chunk.elements][:, CORNER_NODES]]
-        scaled = (chunk.gradients * np.sqrt(chunk.weights)[..., None, None]).transpose(0, 2, 1, 3)
-        scaled = scaled.reshape(len(own), 27, -1)
-        laplacian = laplacian + _matrix(
-            np.matmul(scaled, scaled.transpose(0, 2, 1)), own, own, (count, count)
-        )
-
-        local = np.einsum(
-            "nq,nqb,nqac->nbac", chunk.weights, chunk.linear, chunk.gradients, optimize=True
-        )
-        components = np.where(own[..., None] < 0, -1, 3 * own[..., None] + np.arange(3)).reshape(
-            len(own), 81
-        )
-        divergence = divergence + _matrix(
-            local.reshape(len(own), 8, 81), ends, components, divergence.shape
-        )
-        np.add.at(weights, own, np.einsum("nq,nqa->na", chunk.weights, chunk.values))
-        volumes[chunk.elements] = chunk.weights.sum(axis=1)
+        ends = corner[mesh.nodes[chunk.elements][:, CORNER_NODES]]
+        sums.add(chunk, own, ends)
         porous.add(chunk, own, ends)
-        np.add.at(masses, ends, np.einsum("nq,nqb->nb", chunk.weights, chunk.linear))
 
     free = np.empty((count, 3), dtype=bool)
     free[number[number >= 0]] = ~held[number >= 0]
     links = node[vertical_links(mesh)]
-    line = lines_of(links[(links >= 0).all(axis=1)], count)
     return Equations(
-        laplacian,
-        divergence,
-        weights[:count],
-        masses,
-        free,
-        line,
-        node,
-        corners,
-        volumes,
-        MappingProxyType(porous.drag),
-        porous.seepage,
+        laplacian=sums.laplacian,
+        divergence=sums.divergence,
+        weights=sums.weights[:count],
+        masses=sums.masses,
+        free=free,
+        line=lines_of(links[(links >= 0).all(axis=1)], count),
+        node=node,
+        corner=corner,
+        volumes=sums.volumes,
+        drag=MappingProxyType(porous.drag),
+        seepage=porous.seepage,
     )
+
+
+class _Sums:
+    """The matrices and weights of viscous flow while elements are summed."""
+
+    def __init__(self, elements: int, nodes: int, corners: int) -> None:
+        self.laplacian = csr_array((nodes, nodes))
+        self.divergence = csr_array((corners, 3 * nodes))
+        self.weights = np.zeros(nodes + 1)  # the last is that of held nodes, number -1
+        self.masses = np.zeros(corners)
+        self.volumes = np.empty(elements)
+
+    def add(self, chunk: Chunk, own: np.ndarray, ends: np.ndarray) -> None:
+        """Add some elements with their nodes ``own`` (n, 27) and corners ``ends`` (n, 8)."""
+        weights, gradients = chunk.weights, chunk.gradients
+        scaled = (gradients * np.sqrt(weights)[..., None, None]).transpose(0, 2, 1, 3)
+        scaled = scaled.reshape(len(own), 27, -1)
+        products = np.matmul(scaled, scaled.transpose(0, 2, 1))
+        self.laplacian = self.laplacian + _matrix(products, own, own, self.laplacian.shape)
+
+        local = np.einsum("nq,nqb,nqac->nbac", weights, chunk.linear, gradients, optimize=True)
+        components = np.where(own[..., None] < 0, -1, 3 * own[..., None] + np.arange(3))
+        self.divergence = self.divergence + _matrix(
+            local.reshape(len(own), 8, 81),
+            ends,
+            components.reshape(len(own), 81),
+            self.divergence.shape,
+        )
+
+        np.add.at(self.weights, own, np.einsum("nq,nqa->na", weights, chunk.values))
+        np.add.at(self.masses, ends, np.einsum("nq,nqb->nb", weights, chunk.linear))
+        self.volumes[chunk.elements] = weights.sum(axis=1)
 
 
 class _Porous:
@@ -136,9 +143,8 @@ class _Porous:
 
         self.seepage = csr_array((counts[1], counts[1]))
         is_porous = resistance.any(axis=(1, 2))
-        free = (
-            np.eye(3) * mesh.mesh.vectors[2, 2] ** 2
-        )  # so far off the pores that it hardly counts
+        # so far off the pores that it hardly counts
+        free = np.eye(3) * mesh.mesh.vectors[2, 2] ** 2
         self._permeability = np.broadcast_to(free, resistance.shape).copy()
         self._permeability[is_porous] = np.linalg.inv(resistance[is_porous])
 

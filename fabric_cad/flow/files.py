@@ -29,6 +29,7 @@ _EDGES = [
     (3, 7),
 ]
 _FACES = [(0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (3, 2, 6, 7), (0, 1, 2, 3), (4, 5, 6, 7)]
+# of nine nodes
 _TRIANGLES = [
     (0, 1, 4),
     (0, 4, 3),
@@ -38,7 +39,7 @@ _TRIANGLES = [
     (3, 7, 6),
     (4, 5, 8),
     (4, 8, 7),
-]  # of nine nodes
+]
 _ON_SECTION = 1e-7  # of a period
 
 
@@ -133,9 +134,8 @@ def _flux(mesh: QuadraticMesh, velocity: np.ndarray) -> tuple[np.ndarray, np.nda
         [np.bincount(line, mesh.points[:, axis]) / total for axis in range(2)], axis=1
     )
     distinct, number = np.unique(np.round(places, 6), axis=0, return_inverse=True)
-    sums = [
-        np.bincount(number.ravel(), part, minlength=len(distinct)) for part in flux.T
-    ]  # below and above a yarn
+    # below and above a yarn
+    sums = [np.bincount(number.ravel(), part, minlength=len(distinct)) for part in flux.T]
 
     return distinct, np.stack(sums, axis=1)
 

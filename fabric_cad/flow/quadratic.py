@@ -12,7 +12,6 @@ Velocity lives on all nodes, pressure on the eight corners.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -23,6 +22,7 @@ from ..composite.homogenisation.periodicity import PeriodicMesh, periodic_pairs
 from ..meshing.hexahedron import CORNERS
 from ..support.arrays import read_only
 from ..support.errors import BuildError
+from ..support.scikit_fem import scikit_fem
 
 PLACES = read_only(
     np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)[:, ::-1]
@@ -116,7 +116,7 @@ class QuadraticMesh:
 
     def folded(self) -> np.ndarray:
         """Indices of the hexahedra whose volume is not positive everywhere, as seen from 3 x 3 x 3 points."""
-        skfem = _scikit_fem()
+        skfem = scikit_fem()
         points = skfem.CellBasis(
             self._skfem, skfem.ElementHex1(), intorder=5, elements=[0], disable_doflocs=True
         ).X
@@ -124,7 +124,7 @@ class QuadraticMesh:
 
     def chunks(self) -> Iterator[Chunk]:
         """All elements, some at a time. Raises :class:`BuildError` where one is folded over."""
-        skfem, order = _scikit_fem(), _from_skfem()
+        skfem, order = scikit_fem(), _from_skfem()
         back = np.argsort(order)
         to_corner = [int(np.flatnonzero(order[:8] == node)[0]) for node in CORNER_NODES]
 
@@ -158,7 +158,7 @@ class QuadraticMesh:
     @cached_property
     def _skfem(self):
         """The mesh as scikit-fem takes it; that numbers edges and faces itself."""
-        skfem, order = _scikit_fem(), _from_skfem()
+        skfem, order = scikit_fem(), _from_skfem()
         corners = np.ascontiguousarray(self.nodes[:, order[:8]].T.astype(np.int32))
         plain = skfem.MeshHex1(
             np.ascontiguousarray(self.mesh.points.T), corners, sort_t=False, validate=False
@@ -173,7 +173,7 @@ class QuadraticMesh:
 
         It keeps what it is asked for, so that one serves one chunk.
         """
-        skfem = _scikit_fem()
+        skfem = scikit_fem()
         return skfem.MappingIsoparametric(self._skfem, skfem.ElementHex2(), skfem.ElementQuad2())
 
 
@@ -184,13 +184,5 @@ def _corners_around(place: np.ndarray) -> np.ndarray:
 
 def _from_skfem() -> np.ndarray:
     """Our node (27,) at each of scikit-fem's."""
-    places = np.round(2 * _scikit_fem().ElementHex2.doflocs - 1)
+    places = np.round(2 * scikit_fem().ElementHex2.doflocs - 1)
     return np.array([int(np.flatnonzero((PLACES == place).all(axis=1))[0]) for place in places])
-
-
-def _scikit_fem():
-    """The package scikit-fem, which takes half a second to import."""
-    import skfem
-
-    logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns of copies it makes itself
-    return skfem

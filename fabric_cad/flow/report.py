@@ -1,7 +1,4 @@
-"""What a permeability says: its report as a value, which is a dict when it is written; its table.
-
-Its summary.
-"""
+"""What a permeability says: its report, a dict only when written, its table and its summary."""
 
 from __future__ import annotations
 
@@ -15,8 +12,8 @@ import numpy as np
 
 from ..cell.traces import trace
 from ..measured.tables import Family
-from ..model.identification import identify
 from ..model.plausibility import implausible
+from ..model.solved import SolvedTable
 from .computation import CellFlow
 from .permeability import Permeability
 from .stokes import TOLERANCE
@@ -58,9 +55,9 @@ class PermeabilityReport:
 
 
 def permeability_report(
-    row: Family, solved: Permeability, seconds: Mapping[str, float]
+    row: Family, table: SolvedTable, solved: Permeability, seconds: Mapping[str, float]
 ) -> PermeabilityReport:
-    """The report of a table of one row; ``seconds`` by stage."""
+    """The report of a table of one row, solved as ``table``; ``seconds`` by stage."""
     flow = solved.solved.flow
     return PermeabilityReport(
         row=solved.solved.fabric.name,
@@ -86,7 +83,7 @@ def permeability_report(
         },
         mesh={"fine": _mesh(solved.solved), "coarse": _mesh(solved.coarse)},
         solver=_solver(solved.solved),
-        warnings=_warnings(row, solved),
+        warnings=_warnings(row, table, solved),
         seconds={name: round(value, 4) for name, value in seconds.items()},
         origin=trace(row, solved.solved.fineness.yarns),
     )
@@ -167,8 +164,8 @@ def _solver(solved: CellFlow) -> dict[str, Any]:
     }
 
 
-def _warnings(row: Family, solved: Permeability) -> list[str]:
-    warnings = list(map(str, implausible(row, identify(row).columns)))
+def _warnings(row: Family, table: SolvedTable, solved: Permeability) -> list[str]:
+    warnings = list(map(str, implausible(row, table.columns)))
     if (worst := float(np.max(solved.error))) > _WIDE_BAR:
         told = f"the permeability differs by {worst:.2g} % on a coarser mesh; ask for a finer one"
         warnings.append(f"{row.names[0]}: {told}")

@@ -24,6 +24,8 @@ from .space import Top
 NAME = "permeability"
 """The stem of every file."""
 
+KINDS = ("json", "csv", "vtu", "png", "pdf")
+
 
 def make_permeability(
     row: Family,
@@ -54,7 +56,8 @@ def make_permeability(
 
     with staged(Path(out) / name, renew_digests) as folder:
         with stages("identify"):
-            fabric = identify(row)[name]
+            table = identify(row)
+            fabric = table[name]
             pores = None if fibre_diameter is None else pores_of(row, families, fibre_diameter)
             fine = fineness(
                 fabric, mesh or {}, top=top, margin=margin, layers=layers, grading=grading
@@ -64,7 +67,7 @@ def make_permeability(
             fabric, fine, _told(stages, pores), top=top, margin_study=margin_study
         )
         _write(solved, folder, stages)
-        report = permeability_report(row, solved, stages.seconds)
+        report = permeability_report(row, table, solved, stages.seconds)
         write_table(report, folder / f"{NAME}.csv")
         write_traced(report.content(), folder / f"{NAME}.json")
 

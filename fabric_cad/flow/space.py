@@ -47,11 +47,12 @@ def _space(
     number = np.full(len(cell.mesh.points), -1)
     number[used] = np.arange(len(used))
 
-    height = cell.size[2]
-    vectors = np.vstack([fabric.lattice.vectors, [0.0, 0.0, height]])
-    origin = np.array([0.0, 0.0, -height / 2])
-    periodic = (True, True, top is Top.PERIODIC)
-    mesh = PeriodicMesh(cell.mesh.points[used], corners.reshape(-1, 8), vectors, origin, periodic)
+    mesh = PeriodicMesh(
+        cell.mesh.points[used],
+        corners.reshape(-1, 8),
+        *cell.repeats(fabric.lattice),
+        periodic=(True, True, top is Top.PERIODIC),
+    )
 
     yarns = swept_yarns(fabric)
     skins = [

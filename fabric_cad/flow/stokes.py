@@ -15,9 +15,10 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import splu
 
+from ..support.iterative import Operator
 from .equations import Equations
 from .lines import line_inverse
-from .minres import Operator, solve
+from .minres import solve
 
 _PINNED = 1e-6  # of the least seepage: a pressure has no level
 TOLERANCE = 1e-5
@@ -59,30 +60,10 @@ def stokes_flow(
 
     free = equations.free[:, :, None].astype(float)
     loads = (equations.weights[:, None, None] * directions.T * free).reshape(-1, count)
-    divergence, gradient = equations.divergence, equations.divergence.T.tocsr()
-    inverses, through_pores = _inverses(equations), _seepage_inverse(equations)
-
-    def multiply(values: np.ndarray) -> np.ndarray:
-        moving, pressure = values[: 3 * nodes], values[3 * nodes :]
-        force = _friction(equations, moving) - gradient @ pressure
-        held = force.reshape(nodes, 3, count) * free
-        return np.concatenate([held.reshape(-1, count), -(divergence @ moving)])
-
-    def precondition(values: np.ndarray) -> np.ndarray:
-        moved = values[: 3 * nodes].reshape(nodes, 3, count) * free
-        for components, inverse in inverses:
-            moved[:, components] = (inverse @ moved[:, components].reshape(nodes, -1)).reshape(
-                nodes, -1, count
-            )
-        moved *= free
-        pressure = values[3 * nodes :] / equations.masses[:, None] + through_pores(
-            values[3 * nodes :]
-        )
-        pressure -= equations.masses @ pressure / equations.masses.sum()  # its mean means nothing
-        return np.concatenate([moved.reshape(-1, count), pressure])
-
     whole = np.concatenate([loads, np.zeros((corners, count))])
-    solution = solve(multiply, whole, precondition, tolerance)
+    multiply = _saddle(equations, count)
+    solution = solve(multiply, whole, _preconditioner(equations, count), tolerance)
+
     found = solution.values
     crossed = whole.T @ found
     energy = found.T @ multiply(found)
@@ -90,7 +71,7 @@ def stokes_flow(
 
     moving = found[: 3 * nodes]
     dissipated = np.einsum("nl,nl->l", moving, _friction(equations, moving))
-    made = np.einsum("cl,c->l", (divergence @ moving) ** 2, 1 / equations.masses)
+    made = np.einsum("cl,c->l", (equations.divergence @ moving) ** 2, 1 / equations.masses)
     return Flow(
         directions=directions,
         velocity=moving.reshape(nodes, 3, count),
@@ -101,6 +82,41 @@ def stokes_flow(
         iterations=solution.iterations,
         residual=solution.residual,
     )
+
+
+def _saddle(equations: Equations, count: int) -> Operator:
+    """The saddle system of velocities and pressures, for ``count`` loads."""
+    nodes, free = len(equations.free), equations.free[:, :, None].astype(float)
+    divergence, gradient = equations.divergence, equations.divergence.T.tocsr()
+
+    def multiply(values: np.ndarray) -> np.ndarray:
+        moving, pressure = values[: 3 * nodes], values[3 * nodes :]
+        force = _friction(equations, moving) - gradient @ pressure
+        held = force.reshape(nodes, 3, count) * free
+        return np.concatenate([held.reshape(-1, count), -(divergence @ moving)])
+
+    return multiply
+
+
+def _preconditioner(equations: Equations, count: int) -> Operator:
+    """Vertical lines of the Laplacian for velocities, masses and seepage for pressures."""
+    nodes, free = len(equations.free), equations.free[:, :, None].astype(float)
+    masses = equations.masses
+    inverses, through_pores = _inverses(equations), _seepage_inverse(equations)
+
+    def precondition(values: np.ndarray) -> np.ndarray:
+        moved = values[: 3 * nodes].reshape(nodes, 3, count) * free
+        for components, inverse in inverses:
+            solved = inverse @ moved[:, components].reshape(nodes, -1)
+            moved[:, components] = solved.reshape(nodes, -1, count)
+        moved *= free
+
+        given = values[3 * nodes :]
+        pressure = given / masses[:, None] + through_pores(given)
+        pressure -= masses @ pressure / masses.sum()  # its mean means nothing
+        return np.concatenate([moved.reshape(-1, count), pressure])
+
+    return precondition
 
 
 def _friction(equations: Equations, moving: np.ndarray) -> np.ndarray:

@@ -129,10 +129,11 @@ def _faded(
     skin = np.flatnonzero(on_skin)
     skin = skin[np.lexsort((height[skin], line[skin]))]
     low, high = np.full(line.max() + 1, -1), np.full(line.max() + 1, -1)
+    # the last one written is a line's outermost
     high[line[skin]], low[line[skin[::-1]]] = (
         skin,
         skin[::-1],
-    )  # the last one written is a line's outermost
+    )
     floor, ceiling = np.full(line.max() + 1, np.inf), np.full(line.max() + 1, -np.inf)
     np.minimum.at(floor, line, height)
     np.maximum.at(ceiling, line, height)

@@ -31,9 +31,8 @@ class Column:
     unit: str
     bound: Bound = ABOVE_0
     per_direction: bool = False
-    others: tuple[tuple[str, str, float], ...] = field(
-        default=(), repr=False
-    )  # (name, unit, factor to the kept)
+    # (name, unit, factor to the kept)
+    others: tuple[tuple[str, str, float], ...] = field(default=(), repr=False)
     kept: str = ""
     factor: float = 1.0
 

@@ -119,10 +119,7 @@ NUMBERS_ALONE = tuple(rule for column in MEASURED for rule in (_finite(column), 
 
 
 def out_of_bounds(table: Family) -> dict[int, Problem]:
-    """The first rule that each row breaks, by row number.
-
-    Rows that keep all of them are not in it.
-    """
+    """The first rule that each row breaks, by row number; of rows that break any."""
     rows = RowValues.of(table)
     refused: dict[int, Problem] = {}
 

@@ -46,10 +46,7 @@ EDGES = read_only(
         ]
     )
 )
-"""The four edges along r, along s and along t, each from its lower to its upper end.
-
-Shape (3, 4, 2).
-"""
+"""The four edges along r, s and t, each from its lower to its upper end; shape (3, 4, 2)."""
 
 FACES = read_only(
     np.array(

@@ -90,10 +90,7 @@ class SectionMesh(ABC):
         """The template of a section and where its strips have their nodes."""
 
     def completed(self, plans: list[Plan], options: MeshOptions) -> list[Plan]:
-        """The plans of all yarns with what needs all their sections.
-
-        The same where nothing does.
-        """
+        """The plans of all yarns, with what needs all their sections where anything does."""
         return plans
 
     def fault(self, options: MeshOptions) -> Problem | None:

@@ -46,9 +46,8 @@ def smoothed(template: Template, modes: np.ndarray, outlines: np.ndarray) -> np.
     for first in range(0, len(outlines), together):
         some = slice(first, first + together)
         for sharp, steps in _STAGES:
-            _descend(
-                cells, nodes[some], coefficients[some], sharp, steps
-            )  # in place: a slice is a view
+            # in place: a slice is a view
+            _descend(cells, nodes[some], coefficients[some], sharp, steps)
 
     return coefficients * size
 

@@ -54,10 +54,7 @@ class ContactValues:
 
 @dataclass(frozen=True, eq=False)
 class BetweenValues:
-    """Sections of one direction between crossings: arrays of shape (rows,), mm.
-
-    See there for the half chord.
-    """
+    """Sections of one direction between crossings, (rows,) mm; see there for the half chord."""
 
     width: np.ndarray
     thickness: np.ndarray

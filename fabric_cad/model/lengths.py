@@ -69,9 +69,8 @@ def slope_from_crimp(crimp, projected, parabola, gap):
         for _ in range(60):
             residual = excess_length(slope, parabola, gap) - target
             step = residual / _excess_derivative(slope, parabola, gap)
-            slope = np.where(
-                moving, slope - step, slope
-            )  # an entry's result is not its neighbours' business
+            # an entry's result is not its neighbours' business
+            slope = np.where(moving, slope - step, slope)
             moving &= np.abs(step) > 4e-16 * slope
             if not moving.any():
                 break

@@ -75,9 +75,8 @@ def serve(
     address = Address(_free_port(port), new_token())
     os.environ["WSLINK_READY_MSG"] = ""  # which would be printed among what the command prints
     os.environ["WSLINK_WS_COMPRESS"] = "0"  # on the loopback, packing takes longer than sending
-    logging.getLogger("wslink").setLevel(
-        logging.CRITICAL
-    )  # a tab that is closed while it is answered is no error
+    # a tab that is closed while it is answered is no error
+    logging.getLogger("wslink").setLevel(logging.CRITICAL)
 
     from trame.app import get_server
     from trame.ui.html import DivLayout
@@ -172,10 +171,7 @@ def _answer(server: Any, desk: Desk) -> dict[str, Job]:
 
 
 def open_browser(address: Address) -> None:
-    """Open the page in a browser.
-
-    The token goes through a file that only the user can read, not its arguments.
-    """
+    """Open the page in a browser, its token by a file that only the user reads, not by arguments."""
     text = f'<!DOCTYPE html><meta http-equiv="refresh" content="0;url={escape(address.url)}"><title>fabric-cad</title>'
     with tempfile.NamedTemporaryFile(
         "w", suffix=".html", prefix="fabric-cad-", delete=False

@@ -29,9 +29,8 @@ _GLOSS = {
     "specular": 0.15,
     "specular_power": 20,
 }
-_TOWARDS = np.array([-0.75, -1.5, 1.35]) / np.linalg.norm(
-    [-0.75, -1.5, 1.35]
-)  # from the cell to the eye
+# from the cell to the eye
+_TOWARDS = np.array([-0.75, -1.5, 1.35]) / np.linalg.norm([-0.75, -1.5, 1.35])
 _RIGHT = np.cross([0.0, 0.0, 1.0], _TOWARDS) / np.linalg.norm(np.cross([0.0, 0.0, 1.0], _TOWARDS))
 _UP = np.cross(_TOWARDS, _RIGHT)
 _ABOVE = 0.07  # of a picture's height: room for a title

@@ -124,9 +124,8 @@ def _distance_to_inside(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
         slope = np.einsum("nid,nd->ni", by, off)
         (xx, xy), (_, yy) = np.moveaxis(np.einsum("nid,njd->nij", by, by), 0, 2)
         twisted = xy + np.einsum("nd,nd->n", off, part[:, 3])
-        xy = np.where(
-            xx * yy > twisted**2, twisted, xy
-        )  # Newton's step where it leads down, else Gauss's
+        # Newton's step where it leads down, else Gauss's
+        xy = np.where(xx * yy > twisted**2, twisted, xy)
         determinant = np.maximum(xx * yy - xy**2, np.finfo(float).tiny)
         step = np.stack(
             [yy * slope[:, 0] - xy * slope[:, 1], xx * slope[:, 1] - xy * slope[:, 0]], axis=1

@@ -85,10 +85,7 @@ def make_case(
     mesh: Mapping[str, Any] | None = None,
     stages: Stages | None = None,
 ) -> CaseReport:
-    """Run the load case of that name on one row's cell.
-
-    As :func:`make_tension`, for any case there is.
-    """
+    """Run the load case of that name on one row's cell, any there is; as :func:`make_tension`."""
     target, incomplete = Path(out) / row.names[0], f"{name}_{INCOMPLETE}"
     finished: list[CaseReport] = []
 

@@ -79,9 +79,10 @@ def sobol(
         .random(samples)
         .T.reshape(2, d, samples)
     )
+    # A and B
     first, second = (
         [quantiles(factor, u) for factor, u in zip(factors.values(), matrix)] for matrix in shares
-    )  # A and B
+    )
     values = {
         name: np.concatenate(
             [first[k], second[k], *(second[k] if k == other else first[k] for other in range(d))]

@@ -63,9 +63,8 @@ def _(factor: Uniform, shares: np.ndarray) -> np.ndarray:
 def _(factor: Normal, shares: np.ndarray) -> np.ndarray:
     from scipy.special import ndtri
 
-    inside = np.clip(
-        shares, np.finfo(float).tiny, 1 - np.finfo(float).epsneg
-    )  # a Sobol sequence may hold 0
+    # a Sobol sequence may hold 0
+    inside = np.clip(shares, np.finfo(float).tiny, 1 - np.finfo(float).epsneg)
     return factor.mean + factor.std * ndtri(inside)
 
 

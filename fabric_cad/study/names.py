@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import fields
 
+from ..cell.figures import MeshFigures
+from ..cell.report import CONSISTENCY
 from ..composite.stiffness.summary import FIGURES
 from ..model.closing import CLOSING
 from ..model.solved import point_columns
@@ -34,29 +36,6 @@ _VOLUMES = (
     "weft_fibre_fraction",
     "warp_fibre_fraction",
 )
-_CONSISTENCY = (
-    "max_penetration_mm",
-    "max_contact_gap_mm",
-    "overlap_volume_mm3",
-    "contact_area_mm2",
-    "thickness_mm",
-)
-_MESH = (
-    "nodes",
-    "hexahedra",
-    "other_elements",
-    "min_scaled_jacobian",
-    "median_scaled_jacobian",
-    "scaled_jacobian_edges_allow",
-    "min_opposite_edge_ratio",
-    "min_corner_angle_deg",
-    "max_corner_angle_deg",
-    "max_aspect",
-    "contact_nodes",
-    "coincident_contact_nodes",
-    "end_nodes",
-    "matching_end_nodes",
-)
 
 
 def figure_names(depth: str, settings: Settings | None = None) -> tuple[str, ...]:
@@ -76,9 +55,9 @@ def figure_names(depth: str, settings: Settings | None = None) -> tuple[str, ...
     names += [f"volumes.{name}" for name in _VOLUMES]
 
     if depth != "identify":
-        names += [f"consistency.{name}" for name in _CONSISTENCY]
+        names += [f"consistency.{name}" for name in CONSISTENCY]
     if depth not in ("identify", "cell", STIFFNESS):
-        names += [f"mesh.{name}" for name in _MESH]
+        names += [f"mesh.{field.name}" for field in fields(MeshFigures)]
     if depth in load_cases():
         known = settings.case(depth).figure_names() if settings is not None else ()
         contact = [field.name for field in fields(ContactReport)]

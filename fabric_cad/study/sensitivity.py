@@ -116,20 +116,14 @@ def sobol_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:
         rng=np.random.default_rng(0),
     ).confidence_interval
 
-    return [
-        {"factor": factor}
-        | {
-            f"{order}{end}": float(what[number, k])
-            for number, order in enumerate(("first_order", "total"))
-            for end, what in (
-                ("", everything),
-                ("_low", np.asarray(spread.low)),
-                ("_high", np.asarray(spread.high)),
-            )
-        }
-        | {"samples": used}
-        for k, factor in enumerate(samples.values)
-    ]
+    ends = {"": everything, "_low": np.asarray(spread.low), "_high": np.asarray(spread.high)}
+    rows: list[Row] = []
+    for k, factor in enumerate(samples.values):
+        row: Row = {"factor": factor}
+        for number, order in enumerate(("first_order", "total")):
+            row |= {f"{order}{end}": float(values[number, k]) for end, values in ends.items()}
+        rows.append(row | {"samples": used})
+    return rows
 
 
 def one_at_a_time_sensitivity(samples: Samples, values: np.ndarray) -> list[Row]:

@@ -119,7 +119,7 @@ class FabricCadError(Exception):
 class InputError(FabricCadError):
     """The input is wrong; carries every :class:`Problem` found, of which it prints 50 a file.
 
-    Exit status 2.
+    The exit status is 2.
     """
 
     exit_status = 2

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from .errors import InputError, Problem
+
 _CGROUPS = (
     (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory.current")),
     (
@@ -23,6 +25,14 @@ def available_memory() -> int | None:
     """
     known = [_system(), _container(), _own_limit()]
     return min((each for each in known if each is not None), default=None)
+
+
+def refuse_beyond_memory(hexahedra: int, needed: int) -> None:
+    """Raise :class:`InputError` where ``needed`` bytes for so many hexahedra are more than there are."""
+    available = available_memory()
+    if available is not None and needed > available:
+        sizes = f"need some {needed / 1e9:.1f} GB, {available / 1e9:.1f} GB are there"
+        raise InputError(Problem(f"{hexahedra} hexahedra {sizes}", column="across"))
 
 
 def _system() -> int | None:

@@ -6,7 +6,7 @@ import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..options import Command, MeshedRowOptions, declare_mesh, declare_rows
+from ..options import Command, MeshedRowOptions, declare_deck, declare_mesh, declare_rows
 from ..rows import find_row, work_on_rows
 from ..voice import Voice
 
@@ -24,11 +24,11 @@ def declare(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``cell``."""
     declare_rows(parser)
     declare_mesh(parser)
-    parser.add_argument(
-        "--deck",
-        choices=("calculix", "abaqus"),
+    declare_deck(
+        parser,
+        "dialect of the .inp; abaqus adds the *DISTRIBUTION TABLE that CalculiX does not know "
+        "(default: calculix)",
         default="calculix",
-        help="dialect of the .inp; abaqus adds the *DISTRIBUTION TABLE that CalculiX does not know (default: calculix)",
     )
 
 
@@ -56,10 +56,8 @@ def make(name: str, options: CellOptions, voice: Voice) -> None:
     if voice.quiet:
         return
 
-    voice.summary(summary(report))
     files = (*(f"{name}.{kind}" for kind in _KINDS), "solved.csv", "report.json")
-    voice.files(Path(options.out) / name / file for file in files)
-    voice.flush()
+    voice.written(summary(report), (Path(options.out) / name / file for file in files))
 
 
 COMMAND = Command(

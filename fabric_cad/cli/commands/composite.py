@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..composite_options import BoxOptions, declare_box
-from ..options import Command, declare_mesh, declare_rows
+from ..options import Command, declare_deck, declare_mesh, declare_rows
 from ..rows import find_row, work_on_rows
 from ..voice import Voice
 
@@ -32,12 +32,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         help="yarns that touch share their nodes, or have nodes of their own inside their contact patches, the matrix "
         "bonded to them either way (default: bonded)",
     )
-    parser.add_argument(
-        "--deck",
-        choices=("calculix", "abaqus"),
-        default="calculix",
-        help="dialect of the .inp (default: calculix)",
-    )
+    declare_deck(parser, "dialect of the .inp (default: calculix)", default="calculix")
 
 
 def run(options: CompositeRowOptions, voice: Voice) -> int:
@@ -64,9 +59,8 @@ def make(name: str, options: CompositeRowOptions, voice: Voice) -> None:
     )
 
     voice.warn(report["warnings"])
-    voice.summary(summary(report))
-    voice.files(Path(options.out) / name / f"{NAME}.{kind}" for kind in KINDS)
-    voice.flush()
+    files = (Path(options.out) / name / f"{NAME}.{kind}" for kind in KINDS)
+    voice.written(summary(report), files)
 
 
 COMMAND: Command[CompositeRowOptions] = Command(

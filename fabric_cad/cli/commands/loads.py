@@ -10,7 +10,7 @@ from typing import Any
 
 from ...simulation.loads import LoadCase, load_cases
 from ...support.numerals import number, whole
-from ..options import Command, MeshedRowOptions, declare_mesh, declare_rows
+from ..options import Command, MeshedRowOptions, declare_deck, declare_mesh, declare_rows
 from ..rows import find_row, work_on_rows
 from ..voice import Voice
 
@@ -47,11 +47,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         default=3600.0,
         help="seconds for a solver job (default 3600)",
     )
-    parser.add_argument(
-        "--deck",
-        choices=("calculix", "abaqus"),
-        help="write the deck in a solver's dialect and run nothing",
-    )
+    declare_deck(parser, "write the deck in a solver's dialect and run nothing")
 
 
 def _positive(kind: Callable[[str], float]) -> Callable[[str], float]:
@@ -108,10 +104,10 @@ def load(name: str, case: str, options: LoadOptions, voice: Voice) -> None:
     if voice.quiet:
         return
 
-    voice.summary(summary(report, settings.case(case)))
     files = sorted([*report.files, f"{case}.json"])
-    voice.files(Path(options.out) / name / file for file in files)
-    voice.flush()
+    voice.written(
+        summary(report, settings.case(case)), (Path(options.out) / name / file for file in files)
+    )
 
 
 def load_commands() -> tuple[Command[Any], ...]:

@@ -78,7 +78,7 @@ def make(name: str, options: PermeabilityOptions, voice: Voice) -> None:
     from ...cell.pipeline import Stages
     from ...flow.pores import FIBRE_DIAMETER
     from ...flow.report import summary
-    from ...flow.run import make_permeability
+    from ...flow.run import KINDS, NAME, make_permeability
     from ...flow.space import Top
 
     if options.yarns == "rigid" and options.fibre_diameter is not None:
@@ -100,12 +100,8 @@ def make(name: str, options: PermeabilityOptions, voice: Voice) -> None:
         stages=Stages(voice.stage),
     )
     voice.warn(report.warnings)
-    voice.summary(summary(report))
-    voice.files(
-        Path(options.out) / name / f"permeability.{kind}"
-        for kind in ("json", "csv", "vtu", "png", "pdf")
-    )
-    voice.flush()
+    files = (Path(options.out) / name / f"{NAME}.{kind}" for kind in KINDS)
+    voice.written(summary(report), files)
 
 
 COMMAND = Command(

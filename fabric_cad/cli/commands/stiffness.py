@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..composite_options import BoxOptions, declare_box
-from ..options import Command, declare_mesh, declare_rows
+from ..options import Command, declare_deck, declare_mesh, declare_rows
 from ..rows import find_row, work_on_rows
 from ..voice import Voice
 
@@ -31,10 +31,8 @@ def declare(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the cell as a plate with free floor and ceiling too: A, B and D",
     )
-    parser.add_argument(
-        "--deck",
-        choices=("calculix", "abaqus"),
-        help="write the same six load cases as a deck in a solver's dialect, and compute nothing",
+    declare_deck(
+        parser, "write the same six load cases as a deck in a solver's dialect, and compute nothing"
     )
 
 
@@ -46,7 +44,7 @@ def run(options: StiffnessOptions, voice: Voice) -> int:
 def make(name: str, options: StiffnessOptions, voice: Voice) -> None:
     """Homogenise the composite of one row into OUT/<row>."""
     from ...cell.pipeline import Stages
-    from ...composite.stiffness.run import make_deck, make_stiffness
+    from ...composite.stiffness.run import KINDS, NAME, make_deck, make_stiffness
     from ...composite.stiffness.summary import summary
 
     row = find_row(name, options, voice)
@@ -61,12 +59,8 @@ def make(name: str, options: StiffnessOptions, voice: Voice) -> None:
 
     report = make_stiffness(row, options.families, options.out, plate=options.plate, **how)
     voice.warn(report.warnings)
-    voice.summary(summary(report))
-    voice.files(
-        Path(options.out) / name / f"stiffness.{kind}"
-        for kind in ("json", "csv", "png", "pdf", "pvd")
-    )
-    voice.flush()
+    files = (Path(options.out) / name / f"{NAME}.{kind}" for kind in KINDS)
+    voice.written(summary(report), files)
 
 
 COMMAND = Command(

@@ -62,9 +62,9 @@ def make(name: str, options: VoxelOptions, voice: Voice) -> None:
     )
 
     share = sum(voxels.fractions().values())
-    voice.summary(f"{name}: {'x'.join(map(str, counts))} voxels, {100 * share:.2f} % yarns")
-    voice.files(Path(options.out) / name / f"voxels.{kind}" for kind in ("vti", "npz"))
-    voice.flush()
+    files = (Path(options.out) / name / f"voxels.{kind}" for kind in ("vti", "npz"))
+    told = f"{name}: {'x'.join(map(str, counts))} voxels, {100 * share:.2f} % yarns"
+    voice.written(told, files)
 
 
 COMMAND = Command(

@@ -40,10 +40,7 @@ class Integrals:
 
 
 def assemble(elements: Elements, coefficients: np.ndarray) -> tuple[bsr_array, Integrals]:
-    """The matrix, in blocks n x n, of ``coefficients`` (elements, n, n, 3, 3), c[i, k, j, l] above.
-
-    The integrals.
-    """
+    """The matrix of ``coefficients`` (elements, n, n, 3, 3), c[i, k, j, l] above, and the integrals."""
     count, size = elements.count, coefficients.shape[1]
     from scipy.sparse import bsr_array
 

@@ -8,12 +8,9 @@ have the iterates.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ...support.errors import SolverError
-from .preconditioners import Operator
+from ...support.iterative import Operator, Solution, not_solved
 
 TOLERANCE = 1e-7
 """Residual over load at which a column is solved.
@@ -23,15 +20,6 @@ An energy is then right to its square, some 1e-10.
 
 MOST_ITERATIONS = 5000
 _LEAST_LOAD = 1e-5  # of what the elements' own forces add up to: what is solved to TOLERANCE of less is rounding
-
-
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """Unknowns (unknowns, loads), the largest relative residual of a column, and the iterations it took."""
-
-    values: np.ndarray
-    residual: float
-    iterations: int
 
 
 def solve(
@@ -72,7 +60,4 @@ def solve(
         residual -= step * image
         before = np.where(going, product, 1.0)
 
-    largest = f"the residual is {reached.max():.3g} of the load, above {tolerance:g}"
-    raise SolverError(
-        f"the equations were not solved: after {iteration} iterations {largest}; nothing is written"
-    )
+    raise not_solved("the equations were", iteration, reached.max(), tolerance)

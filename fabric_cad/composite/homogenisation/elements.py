@@ -12,13 +12,13 @@ Their corners stand in another order there; here it is that of VTK and C3D8::
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from ...support.scikit_fem import scikit_fem
 from .periodicity import PeriodicMesh, periodic_pairs
 
 _UNIT_CUBE = np.array(
@@ -76,7 +76,7 @@ class Elements:
 
     def chunks(self) -> Iterator[Chunk]:
         """All elements, some at a time."""
-        skfem = _scikit_fem()
+        skfem = scikit_fem()
         _, back = _to_skfem()
         middle = self.mesh.origin[2] + self.mesh.vectors[2, 2] / 2
 
@@ -105,8 +105,7 @@ class Elements:
     @cached_property
     def _skfem(self):
         """The mesh as scikit-fem takes it, periodic where the cell is."""
-        skfem = _scikit_fem()
-        logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns of copies it makes itself
+        skfem = scikit_fem()
         to, _ = _to_skfem()
         points = np.ascontiguousarray(self.mesh.points.T)
         corners = np.ascontiguousarray(self.mesh.hexahedra[:, to].T.astype(np.int32))
@@ -125,14 +124,7 @@ def _to_skfem() -> tuple[np.ndarray, np.ndarray]:
     to = np.array(
         [
             int(np.flatnonzero((_UNIT_CUBE == corner).all(axis=1))[0])
-            for corner in _scikit_fem().refdom.RefHex.p.T
+            for corner in scikit_fem().refdom.RefHex.p.T
         ]
     )
     return to, np.argsort(to)
-
-
-def _scikit_fem():
-    """The package scikit-fem, which takes half a second to import."""
-    import skfem
-
-    return skfem

@@ -103,10 +103,7 @@ def homogenise(mesh: PeriodicMesh, materials: Materials) -> Effective:
 
 
 def homogenise_plate(mesh: PeriodicMesh, materials: Materials) -> Plate:
-    """The stiffness of a cell that repeats along its first two edges, as a plate.
-
-    Raises as :func:`homogenise`.
-    """
+    """The stiffness of a cell as a plate, along its first two edges; raises as :func:`homogenise`."""
     if mesh.periodic != (True, True, False):
         raise ValueError("a plate repeats along its first two edges and not through its thickness")
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...support.iterative import Operator
+
 if TYPE_CHECKING:
     from scipy.sparse import bsr_array
-
-Operator = Callable[[np.ndarray], np.ndarray]
 
 _SAME_LINE = 1e-6  # mm: nodes whose places in plan are nearer stand above each other
 

@@ -15,11 +15,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...support.iterative import Operator
 from ..transverse import FIRST, SECOND
 from .assembly import VOIGT, Integrals, assemble, elastic_coefficients, forces
 from .conjugate_gradients import solve
 from .elements import Elements
-from .preconditioners import Operator, block_jacobi, product, vertical_lines
+from .preconditioners import block_jacobi, product, vertical_lines
 
 
 @dataclass(frozen=True, eq=False)

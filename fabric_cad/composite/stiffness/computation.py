@@ -17,8 +17,7 @@ from ...meshing.options import MeshOptions
 from ...meshing.quality import mesh_quality
 from ...model.identification import identify
 from ...model.solved import SolvedFabric, SolvedTable
-from ...support.errors import InputError, Problem
-from ...support.memory import available_memory
+from ...support.memory import refuse_beyond_memory
 from ..cell import CompositeCell
 from ..fibres import fibre_sections
 from ..homogenisation.homogenise import Effective, Materials, Plate, homogenise, homogenise_plate
@@ -105,7 +104,8 @@ def compute_stiffness(model: CompositeModel, *, plate: bool, stages: Stages) -> 
     equations are not solved.
     """
     cell, fabric = model.cell, model.fabric
-    _refuse_too_large(len(cell.mesh.hexahedra))
+    hexahedra = len(cell.mesh.hexahedra)
+    refuse_beyond_memory(hexahedra, _BYTES * hexahedra)
     with stages("materials"):
         materials = element_materials(cell.mesh, model.fractions, model.constituents)
     with stages("homogenise"):
@@ -120,16 +120,9 @@ def compute_stiffness(model: CompositeModel, *, plate: bool, stages: Stages) -> 
 
 def periodic_mesh(cell: CompositeCell, fabric: SolvedFabric, through: bool = True) -> PeriodicMesh:
     """A composite cell that repeats in its plane, and ``through`` its thickness as well or not."""
-    height = cell.size[2] * fabric.lattice.axes[2, 2]
-    vectors = np.vstack([fabric.lattice.vectors, [0.0, 0.0, height]])
-    origin = np.array([0.0, 0.0, -height / 2])
     return PeriodicMesh(
-        cell.mesh.points, cell.mesh.hexahedra, vectors, origin, (True, True, through)
+        cell.mesh.points,
+        cell.mesh.hexahedra,
+        *cell.repeats(fabric.lattice),
+        periodic=(True, True, through),
     )
-
-
-def _refuse_too_large(hexahedra: int) -> None:
-    needed, available = _BYTES * hexahedra, available_memory()
-    if available is not None and needed > available:
-        message = f"{hexahedra} hexahedra need some {needed / 1e9:.1f} GB, {available / 1e9:.1f} GB are there"
-        raise InputError(Problem(message, column="across"))

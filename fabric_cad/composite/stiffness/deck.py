@@ -118,16 +118,12 @@ def _held(periodic: PeriodicMesh) -> int:
 def _materials(
     mesh: Mesh, in_matrix: np.ndarray, fractions: np.ndarray, constituents: Constituents
 ) -> Iterator[Keyword]:
-    """Elements by material: the matrix, and yarns by their fibre fraction.
-
-    A set of elements for every yarn too.
-    """
+    """Elements by material (matrix, yarns by their fibre fraction), and those of every yarn."""
     numbers = np.arange(1, len(mesh.hexahedra) + 1)
     groups = {"matrix": np.flatnonzero(in_matrix)}
     yarn = np.flatnonzero(~in_matrix)
-    distinct, group = np.unique(
-        np.round(fractions[yarn], 12), return_inverse=True
-    )  # NaN: not known, one group
+    # NaN: not known, one group
+    distinct, group = np.unique(np.round(fractions[yarn], 12), return_inverse=True)
     groups |= {f"yarn_{n + 1}": yarn[group == n] for n in range(len(distinct))}
     for name, elements in groups.items():
         yield Hexahedra(f"{name}_elements", numbers[elements], mesh.hexahedra[elements] + 1)

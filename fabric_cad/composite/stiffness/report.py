@@ -1,7 +1,4 @@
-"""What a stiffness says: its report as a value, which is a dict when it is written; its table.
-
-Its summary.
-"""
+"""What a stiffness says: its report as a value, which is a dict only when it is written."""
 
 from __future__ import annotations
 

@@ -21,6 +21,9 @@ from .summary import write_table
 NAME = "stiffness"
 """The stem of every file."""
 
+KINDS = ("json", "csv", "png", "pdf", "pvd")
+"""Endings of the files of a stiffness; ``.pvd`` names one more a load case."""
+
 
 def make_stiffness(
     row: Family,

@@ -136,9 +136,8 @@ def cell_vectors(rest: np.ndarray, angle: float, strain: float = 0.0) -> np.ndar
 def moment(rest: np.ndarray, angle: float, strain: float, forces: np.ndarray) -> float:
     """Moment (N mm) of a cell: work of the ends' ``forces`` (2, 3), N, per radian of shear."""
     half = math.radians(angle) / 2
-    turning = (
-        _turned(rest, -math.sin(half), math.cos(half)) / 2
-    )  # the vectors' derivative by the angle
+    # the vectors' derivative by the angle
+    turning = _turned(rest, -math.sin(half), math.cos(half)) / 2
     return float(((1 + strain) * turning * forces).sum())
 
 

@@ -25,10 +25,7 @@ class Increment:
 
 
 def read_sta(path: str | Path) -> tuple[Increment, ...]:
-    """Every attempt listed in a ``.sta`` file, also one still being written.
-
-    None where there is no file.
-    """
+    """Every attempt listed in a ``.sta`` file, even of a running job; none without a file."""
     try:
         text = Path(path).read_text(encoding="ascii", errors="replace")
     except FileNotFoundError:

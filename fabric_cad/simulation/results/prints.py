@@ -56,7 +56,7 @@ CONTACT_FORCE = {
 }
 """Where CF has what: force on the slave surface, its centre of gravity and mean outward normal.
 
-Tension positive.
+Tension is positive.
 """
 
 
