@@ -52,6 +52,12 @@ def solved(fabric, constituents=YARN, **mesh):
     return volumes[~cell.in_matrix].sum() / volumes.sum(), effective
 
 
+def test_a_mesh_of_which_one_number_is_told_is_as_fine_both_ways(fabrics):
+    options = composite_mesh_options(fabrics["plain"], **(COARSE | {"across": 12}))
+    assert (options.across, options.crossing) == (12, 12)
+    assert composite_mesh_options(fabrics["plain"], **COARSE).crossing == COARSE["across"]
+
+
 def test_a_balanced_plain_weave_is_as_published(fabrics):
     """The mesh of 5 952 hexahedra (yarns .4200 of the cell) as solved by an independent code and by CalculiX."""
     share, effective = solved(fabrics["plain"])

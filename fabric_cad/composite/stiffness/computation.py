@@ -28,7 +28,7 @@ from ..options import CompositeOptions
 from ..spacing import composite_mesh_options
 from ..substances import Constituents
 
-COARSE = {"across": 8, "crossing": 8}
+COARSE = {"across": 8}
 """The mesh where nothing is said of it: moduli change by 1 % on finer ones, which follow the yarns' faces closer."""
 
 _BYTES = 9000  # a hexahedron needs, measured

@@ -61,7 +61,7 @@ def plot_flow(plan: np.ndarray, flux: np.ndarray, title: str, sections: list[Sec
             *section.points.T, section.triangles, section.speed, shading="gouraud", rasterized=True
         )
         figure.colorbar(image, ax=ax, label="speed, mm2")
-        _label(ax, section.title, ("mm", "z mm"))
+        _label(ax, section.title, ("x mm", "z mm"))
 
     return figure
 
